@@ -1,0 +1,113 @@
+"""Shader text: `#include` with slots, generated parameters, two dialects, and errors told by file and line. No GL here.
+
+`#include "lib/ndf_{ndf}.glsl"` is a path from shaders/, its slots filled from the choices. Each file enters once.
+`#include "params.glsl"` and other generated files come from a dictionary.
+"""
+
+import re
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from .model import Invalid, Param, declared
+
+PACKAGE = Path(__file__).parent
+SHADERS = next(p for p in (PACKAGE / "shaders", PACKAGE.parent / "shaders") if p.is_dir())
+
+PREAMBLE = {
+    "330 core": "#version 330 core\n",
+    "300 es": "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n",
+}
+INCLUDE = re.compile(r'\s*#include "([^"]+)"')
+LOCATION = re.compile(r"\b\d+:(\d+)\((\d+)\)|\b\d+\((\d+)\)|ERROR: \d+:(\d+)")
+
+
+@dataclass(frozen=True)
+class Source:
+    """Assembled shader text; `lines[i]` is the (file, line) that line i + 1 comes from."""
+
+    text: str
+    lines: tuple[tuple[str, int], ...]
+    files: tuple[str, ...]  # paths from shaders/, generated ones left out
+
+    def explain(self, log):
+        """A compiler's log with its line numbers replaced by file:line; drivers name only the assembled text's lines."""
+
+        def place(match):
+            number = int(next(g for g in (match[1], match[3], match[4]) if g))
+            file, line = self.lines[number - 1] if 0 < number <= len(self.lines) else ("assembled text", number)
+            return f"{file}:{line}" + (f"({match[2]})" if match[2] else "")
+
+        return LOCATION.sub(place, log)
+
+
+def assemble(path, slots=None, generated=None, dialect="330 core"):
+    """The Source of the shader `path` with its slots filled. Raises Invalid for a missing file, slot or a loop."""
+    slots, generated = slots or {}, generated or {}
+    text, lines, files = [], [], []
+    preamble = PREAMBLE[dialect].splitlines()
+    text += preamble
+    lines += [("preamble", i + 1) for i in range(len(preamble))]
+    seen = set()
+
+    def include(name, chain):
+        if name in chain:
+            raise Invalid(f"{chain[-1]}: include loop: {' -> '.join([*chain[chain.index(name):], name])}")
+        if name in seen:
+            return
+        seen.add(name)
+        if name in generated:
+            body = generated[name]
+        else:
+            body = read(name, chain)
+            files.append(name)
+        for number, line in enumerate(body.splitlines(), 1):
+            if match := INCLUDE.match(line):
+                include(filled(match[1], slots, f"{name}:{number}"), [*chain, name])
+            else:
+                text.append(line)
+                lines.append((name, number))
+
+    include(path, [])
+    return Source("\n".join(text) + "\n", tuple(lines), tuple(files))
+
+
+def filled(path, slots, where):
+    """`path` with each {slot} replaced by its choice."""
+    missing = [name for name in re.findall(r"{(\w+)}", path) if name not in slots]
+    if missing:
+        raise Invalid(f"{where}: no choice fills the slot {{{missing[0]}}} of {path}")
+    return path.format(**slots)
+
+
+def read(name, chain):
+    try:
+        return text_of(name, (SHADERS / name).stat().st_mtime_ns)
+    except OSError:
+        where = f"included by {chain[-1]}" if chain else "asked for"
+        raise Invalid(f"shaders/{name}: no such file, {where}") from None
+
+
+@cache
+def text_of(name, changed):
+    return (SHADERS / name).read_text(encoding="utf-8")
+
+
+def params_glsl(structs):
+    """GLSL that declares the params of each class as `struct Name {...}; uniform Name name;`. structs: name -> class."""
+    text = ""
+    for name, cls in structs.items():
+        if params := declared(cls, Param):
+            body = "".join(f"  {p.glsl} {n};  // {p.doc}{p.unit and f', {p.unit}'}\n" for n, p in params.items())
+            text += f"struct {name.title()} {{\n{body}}};\nuniform {name.title()} {name};\n"
+    return text
+
+
+def of_model(path, model, dialect="330 core", slots=None, structs=None, generated=None):
+    """A shader that uses the model: {model} and its choices fill slots, `params.glsl` declares `material`."""
+    return assemble(
+        path,
+        {"model": model.name(), **model.choices(), **(slots or {})},
+        {"params.glsl": params_glsl({"material": type(model), **(structs or {})}), **(generated or {})},
+        dialect,
+    )

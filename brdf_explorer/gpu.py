@@ -1,0 +1,284 @@
+"""The only module that calls OpenGL: contexts, programs by text, targets, uniforms, and functions evaluated over tables."""
+
+import ctypes
+import ctypes.util
+import sys
+from contextlib import contextmanager
+
+import moderngl
+import numpy as np
+
+from .glsl import Source, assemble, of_model
+from .model import Invalid, Param, declared
+
+PACKAGES = (
+    "on Debian or Ubuntu: apt install libegl1 libgl1-mesa-dri; on Fedora: dnf install mesa-libEGL mesa-dri-drivers; "
+    "on Arch: pacman -S mesa libglvnd"
+)
+ROW = 1024  # width of the tables that `evaluate` uploads
+
+
+@contextmanager
+def offscreen():
+    """A Gpu without a window: EGL, else OSMesa, else Invalid that names the packages to install."""
+    gpu = Gpu(_standalone())
+    try:
+        yield gpu
+    finally:
+        gpu.ctx.release()
+
+
+def _standalone():
+    attempts = []
+    backends = [("EGL", {"backend": "egl"})] if sys.platform.startswith("linux") else [("OpenGL", {})]
+    for name, options in backends:
+        try:
+            return moderngl.create_context(standalone=True, require=330, **options)
+        except Exception as error:  # glcontext raises bare Exception for each cause
+            attempts.append(f"{name}: {str(error).strip()}")
+    if sys.platform.startswith("linux"):
+        try:
+            return moderngl.create_context(context=OSMesa(), require=330)
+        except OSError as error:
+            attempts.append(f"OSMesa: {error}")
+    hint = f"; {PACKAGES}" if sys.platform.startswith("linux") else ""
+    raise Invalid(f"no OpenGL 3.3 without a window ({'; '.join(attempts)}){hint}")
+
+
+class OSMesa:
+    """A software context from Mesa's libOSMesa, in the form that moderngl.create_context(context=...) takes.
+
+    Raises OSError when the library or a core 3.3 context is missing.
+    """
+
+    # OSMESA_FORMAT RGBA, PROFILE CORE, CONTEXT_MAJOR_VERSION 3, MINOR 3, DEPTH_BITS 24, end
+    ATTRIBUTES = (0x22, 0x1908, 0x33, 0x34, 0x36, 3, 0x37, 3, 0x30, 24, 0)
+
+    def __init__(self):
+        self.library = ctypes.CDLL(ctypes.util.find_library("OSMesa") or "libOSMesa.so.8")
+        self.library.OSMesaCreateContextAttribs.restype = ctypes.c_void_p
+        self.library.OSMesaGetProcAddress.restype = ctypes.c_void_p
+        attributes = (ctypes.c_int * len(self.ATTRIBUTES))(*self.ATTRIBUTES)
+        self.handle = ctypes.c_void_p(self.library.OSMesaCreateContextAttribs(attributes, None))
+        self.buffer = (ctypes.c_ubyte * 256)()
+        unsigned_byte = 0x1401
+        if not self.handle or not self.library.OSMesaMakeCurrent(self.handle, self.buffer, unsigned_byte, 8, 8):
+            raise OSError("libOSMesa makes no OpenGL 3.3 core context")
+
+    def load_opengl_function(self, name):
+        return self.library.OSMesaGetProcAddress(name.encode()) or 0
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        pass
+
+    def release(self):
+        if self.handle:
+            self.library.OSMesaDestroyContext(self.handle)
+            self.handle = None
+
+
+class Gpu:
+    """A moderngl context with its programs and targets. Views draw with it; a window or `offscreen` makes it."""
+
+    def __init__(self, ctx):
+        self.ctx = ctx
+        self.programs = {}
+        self.targets = {}
+        self.arrays = {}
+
+    @property
+    def device(self):
+        """Renderer and GL version, as the driver names them."""
+        return f"{self.ctx.info['GL_RENDERER']}, OpenGL {self.ctx.info['GL_VERSION']}"
+
+    def program(self, fragment, vertex=None):
+        """The linked program of two Sources, from the cache if their text was seen. Raises Invalid with file and line."""
+        vertex = vertex or assemble("views/full.vert")
+        key = (vertex.text, fragment.text)
+        if key not in self.programs:
+            try:
+                self.programs[key] = self.ctx.program(vertex_shader=vertex.text, fragment_shader=fragment.text)
+            except moderngl.Error as error:
+                stage = vertex if "vertex_shader" in str(error) else fragment
+                raise Invalid(stage.explain(_log(str(error)))) from None
+        return self.programs[key]
+
+    def target(self, name, size, components=4, dtype="f4", depth=False):
+        """The framebuffer of that name with one texture; kept while size and format stay, else made anew."""
+        form = (tuple(size), components, dtype, depth)
+        if name in self.targets:
+            framebuffer, old = self.targets[name]
+            if old == form:
+                return framebuffer
+            framebuffer.color_attachments[0].release()
+            framebuffer.release()
+        texture = self.ctx.texture(size, components, dtype=dtype)
+        buffer = self.ctx.depth_renderbuffer(size) if depth else None
+        framebuffer = self.ctx.framebuffer([texture], buffer)
+        self.targets[name] = (framebuffer, form)
+        return framebuffer
+
+    def texture(self, array, filter="nearest", repeat_x=False):
+        """A float32 or uint8 texture of an array (H, W) or (H, W, C), first row at v = 0."""
+        array = np.ascontiguousarray(array if array.dtype == np.uint8 else array.astype(np.float32))
+        components = array.shape[2] if array.ndim == 3 else 1
+        dtype = "f1" if array.dtype == np.uint8 else "f4"
+        texture = self.ctx.texture((array.shape[1], array.shape[0]), components, array.tobytes(), dtype=dtype, alignment=1)
+        mode = moderngl.NEAREST if filter == "nearest" else moderngl.LINEAR
+        texture.filter = (mode, mode)
+        texture.repeat_x, texture.repeat_y = repeat_x, False
+        return texture
+
+    def draw(self, program, target, uniforms=None, textures=None, vertices=3, index=None, instances=1):
+        """Draw attribute-less triangles (by default the one that fills the target) or those of an index buffer.
+
+        uniforms: name -> number, tuple, or a Declared instance for a struct; a name the compiler dropped is skipped.
+        textures: name -> texture.
+        """
+        for name, value in (uniforms or {}).items():
+            set_uniform(program, name, value)
+        for unit, (name, texture) in enumerate((textures or {}).items()):
+            if name in program:
+                texture.use(unit)
+                program[name] = unit
+        key = (program, index)
+        if key not in self.arrays:
+            self.arrays[key] = self.ctx.vertex_array(program, [], index_buffer=index)
+        target.use()
+        self.arrays[key].render(moderngl.TRIANGLES, vertices=-1 if index else vertices, instances=instances)
+
+    def pixels(self, target):
+        """The target's colours as an array (H, W, C), first row at the top."""
+        texture = target.color_attachments[0]
+        dtype = {"f1": np.uint8, "f2": np.float16, "f4": np.float32}[texture.dtype]
+        data = np.frombuffer(target.read(components=texture.components, dtype=texture.dtype, alignment=1), dtype)
+        return np.ascontiguousarray(data.reshape(texture.height, texture.width, texture.components)[::-1])
+
+    # --- functions over tables -----------------------------------------------------------------------------------------
+
+    def f(self, model, wo, wi):
+        """float32 f from the GLSL, (..., 3); arguments as Model.f."""
+        return self.evaluate_model(model, "vec3 f(vec3 wo, vec3 wi)", wo, wi)[0]
+
+    def pdf(self, model, wo, wi):
+        """float32 pdf from the GLSL, (...); arguments as Model.pdf."""
+        return self.evaluate_model(model, "float pdf(vec3 wo, vec3 wi)", wo, wi)[0]
+
+    def sample_f(self, model, wo, u):
+        """float32 (wi, weight) from the GLSL, (..., 3) each; arguments as Model.sample_f."""
+        weight, wi = self.evaluate_model(model, "vec3 sample_f(vec3 wo, vec2 u, out vec3 wi)", wo, u)
+        return wi, weight
+
+    def evaluate_model(self, model, signature, *arguments):
+        def source(call):
+            include = {"chunk.glsl": f'#include "models/{model.name()}.glsl"\n', "call.glsl": call}
+            return of_model("views/probe.frag", model, generated=include)
+
+        return self.evaluate(source, signature, *arguments, uniforms={"material": model})
+
+    def evaluate_chunk(self, path, signature, *arguments, slots=None):
+        """Values of a function of a file in shaders/, such as ("lib/fresnel.glsl", "float F0(float eta, float k)", eta, k)."""
+
+        def source(call):
+            return assemble("views/probe.frag", slots, {"chunk.glsl": f'#include "{path}"\n', "call.glsl": call})
+
+        return self.evaluate(source, signature, *arguments)
+
+    def evaluate(self, source, signature, *arguments, uniforms=None):
+        """Values of a GLSL function over tables of arguments, in float32.
+
+        source(call) gives the Source of views/probe.frag around the generated `call`. Arguments broadcast like (..., n), a
+        float being n = 1 without the axis. Returns the value and then each `out` argument, as a list.
+        """
+        function = Signature(signature)
+        columns = [
+            np.asarray(a, dtype=t.dtype)[..., None] if t.components == 1 else np.asarray(a, dtype=t.dtype)
+            for a, t in zip(arguments, function.inputs, strict=True)
+        ]
+        shape = np.broadcast_shapes(*(c.shape[:-1] for c in columns))
+        count = int(np.prod(shape, dtype=int))
+        width = min(ROW, max(count, 1))
+        height = max(-(-count // width), 1)
+        program = self.program(source(function.call()))
+        textures = {}
+        for i, (column, kind) in enumerate(zip(columns, function.inputs, strict=True)):
+            table = np.zeros((height * width, 4), dtype=kind.dtype)
+            table[:count, : kind.components] = np.broadcast_to(column, (*shape, kind.components)).reshape(count, -1)
+            textures[f"argument{i}"] = self.ctx.texture((width, height), 4, table.tobytes(), dtype=kind.texture)
+        outputs = [self.ctx.texture((width, height), 4, dtype="f4") for _ in function.outputs]
+        target = self.ctx.framebuffer(outputs)
+        self.draw(program, target, uniforms, textures)
+        results = []
+        for i, kind in enumerate(function.outputs):
+            data = np.frombuffer(target.read(components=4, attachment=i, dtype="f4"), np.float32).reshape(-1, 4)
+            data = data[:count, : kind.components].reshape(*shape, kind.components)
+            results.append(data[..., 0] if kind.components == 1 else data)
+        for resource in (target, *outputs, *textures.values()):
+            resource.release()
+        return results
+
+
+class Signature:
+    """A GLSL function's signature, parsed: the types of what goes in and of what comes out."""
+
+    class Kind:
+        def __init__(self, glsl):
+            self.glsl = glsl
+            self.unsigned = glsl.startswith("u")
+            self.components = int(glsl[-1]) if glsl[-1].isdigit() else 1
+            self.dtype, self.texture = (np.uint32, "u4") if self.unsigned else (np.float32, "f4")
+
+    def __init__(self, text):
+        head, _, tail = text.partition("(")
+        result, self.name = head.split()
+        parts = [p.split() for p in tail.rstrip(") {").split(",")]
+        self.inputs = [self.Kind(p[-2]) for p in parts if p[0] != "out"]
+        self.out = [self.Kind(p[-2]) for p in parts if p[0] == "out"]
+        self.order = [p[0] == "out" for p in parts]
+        self.names = [p[-1] for p in parts if p[0] != "out"]
+        self.outputs = [self.Kind(result), *self.out]
+
+    def call(self):
+        """GLSL of a main that fetches the arguments of this pixel's row, calls the function and writes what it gives."""
+        lines = []
+        for i, kind in enumerate(self.inputs):
+            lines.append(f"uniform highp {'u' if kind.unsigned else ''}sampler2D argument{i};")
+        for i in range(len(self.outputs)):
+            lines.append(f"layout(location = {i}) out vec4 result{i};")
+        lines.append("void main() {\n  ivec2 row = ivec2(gl_FragCoord.xy);")
+        for i, kind in enumerate(self.out):
+            lines.append(f"  {kind.glsl} out{i};")
+        inputs, out = iter(range(len(self.inputs))), iter(range(len(self.out)))
+        arguments = []
+        for is_out in self.order:
+            if is_out:
+                arguments.append(f"out{next(out)}")
+            else:
+                i = next(inputs)
+                arguments.append(f"texelFetch(argument{i}, row, 0).{'xyzw'[: self.inputs[i].components]}")
+        lines.append(f"  {self.outputs[0].glsl} value = {self.name}({', '.join(arguments)});")
+        for i, kind in enumerate(self.outputs):
+            value = "value" if i == 0 else f"out{i - 1}"
+            padding = ", 0.0" * (4 - kind.components)
+            lines.append(f"  result{i} = vec4({value}{padding});")
+        return "\n".join([*lines, "}\n"])
+
+
+def set_uniform(program, name, value):
+    """Set a uniform, or each param of a Declared instance as a member of the struct `name`."""
+    if hasattr(value, "__dataclass_fields__"):
+        for member in declared(value, Param):
+            set_uniform(program, f"{name}.{member}", getattr(value, member))
+    elif name in program:
+        program[name] = value
+
+
+def _log(message):
+    """The compiler's own lines of moderngl's message."""
+    return "\n".join(line for line in message.splitlines() if ":" in line or "(" in line) or message
+
+
+__all__ = ["Gpu", "Signature", "Source", "offscreen"]

@@ -1,0 +1,3 @@
+"""Slot smith: GGX's Lambda needs no fit."""
+
+from .smith_ggx_exact import Lambda as Lambda

@@ -1,0 +1,6 @@
+"""The models, one module each: a dataclass whose fields are the parameters. `MODELS` lists them by name."""
+
+from .diffuse import Diffuse
+from .microfacet import Microfacet
+
+MODELS = {model.name(): model for model in (Microfacet, Diffuse)}

@@ -1,0 +1,71 @@
+"""Microfacets that are mirrors: Torrance and Sparrow 1967; Cook and Torrance 1982; as Walter et al. 2007, Eq. 20."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..lib import slot
+from ..lib.common import HORIZON, above_horizon, mirror, split
+from ..lib.microfacet import cos_facet
+from ..model import Model, choice, param
+
+
+@dataclass(frozen=True)
+class Microfacet(Model):
+    """Torrance-Sparrow: f = D G F / (4 cos cos), facets that are mirrors.
+
+    Leaves out light that meets more than one facet, so rough metals lose energy: up to 0.69 of it for GGX at alpha = 1,
+    seen along the normal (its albedo is 1 - ln 2), and transmission.
+    """
+
+    alpha: tuple = param((0.2, 0.2), 1e-4, 1.0, "roughness along x and y: scale of the facets' slopes", scale="log")
+    eta: tuple = param((0.143, 0.375, 1.442), 0.05, 6.0, "index of refraction at R, G, B, relative to the air's")
+    k: tuple = param((3.983, 2.386, 1.603), 0.0, 15.0, "extinction coefficient at R, G, B; 0 for a dielectric")
+    ndf: str = choice("ggx", ("ggx", "beckmann"), "distribution of the facets' normals")
+    shadowing: str = choice(
+        "correlated",
+        ("none", "separable", "correlated", "directional", "full"),
+        "how masking towards the viewer and shadowing from the light combine",
+    )
+    fresnel: str = choice("conductor", ("conductor", "dielectric", "schlick", "one"), "reflectance of a facet")
+    smith: str = choice("exact", ("exact", "rational"), "Smith's Lambda of Beckmann: exact, or Walter's rational fit")
+
+    def slopes(self):
+        return self.alpha
+
+    def f(self, wo, wi):
+        alpha = np.array(self.alpha)
+        D = slot("ndf", self.ndf).D
+
+        def value(wo, wi):
+            facet = slot("fresnel", self.fresnel).F(cos_facet(wo, wi), np.array(self.eta), np.array(self.k))
+            scale = D(wo + wi, alpha) * self._G2(wo, wi) / (4 * split(wo)[2] * split(wi)[2])
+            return facet * scale[..., None]
+
+        return above_horizon(value, wo, wi, 3)
+
+    def pdf(self, wo, wi):
+        alpha = np.array(self.alpha)
+        ndf = slot("ndf", self.ndf)
+        return above_horizon(lambda o, i: ndf.D(o + i, alpha) / (4 * ndf.visible_area(o, alpha)), wo, wi)
+
+    def sample_f(self, wo, u):
+        wo, u = np.asarray(wo, dtype=float), np.asarray(u, dtype=float)
+        shape = np.broadcast_shapes(wo.shape[:-1], u.shape[:-1])
+        wo, u = np.broadcast_to(wo, (*shape, 3)), np.broadcast_to(u, (*shape, 2))
+        alpha = np.array(self.alpha)
+        ndf = slot("ndf", self.ndf)
+        wi = np.broadcast_to([0.0, 0.0, 1.0], wo.shape).copy()
+        up = wo[..., 2] > HORIZON
+        wi[up] = mirror(wo[up], ndf.sample_D_visible(wo[up], u[up], alpha))
+
+        def weight(wo, wi):
+            facet = slot("fresnel", self.fresnel).F(cos_facet(wo, wi), np.array(self.eta), np.array(self.k))
+            return facet * (self._G2(wo, wi) * ndf.visible_area(wo, alpha) / split(wo)[2])[..., None]
+
+        return wi, above_horizon(weight, wo, wi, 3)
+
+    def _G2(self, wo, wi):
+        alpha = np.array(self.alpha)
+        Lambda = slot("smith", self.ndf, self.smith).Lambda
+        return slot("shadowing", self.shadowing).G2(wo, wi, Lambda(wo, alpha), Lambda(wi, alpha))

@@ -1,0 +1,45 @@
+// Fresnel reflectance of unpolarised light at a smooth interface; c is the cosine of the angle of incidence, in [0, 1].
+// Born and Wolf, Principles of Optics, sections 1.5.2 and 14.2. Rearranged so that nothing cancels as eta -> 1 or k -> 0.
+// Leaves out interference in films and polarisation of the incident light.
+
+// Dielectric; eta is the transmitted over the incident index. 1 at total internal reflection.
+float F_dielectric(float c, float eta) {
+  float excess = (eta - 1.0) * (eta + 1.0);
+  float s2 = (1.0 - c) * (1.0 + c);
+  float square = eta < 1.0 ? eta * eta - s2 : excess + c * c;  // (eta cos theta_t)^2; both are equal, this one rounds less
+  if (square <= 0.0) return 1.0;
+  float t = sqrt(square);
+  float rs = excess / ((c + t) * (c + t));  // (t - c) / (t + c) without its cancellation: 1.7e-4 -> 7e-7 at eta = 1.001
+  float rp = rs * (c * t - s2) / (c * t + s2);
+  return 0.5 * (rs * rs + rp * rp);
+}
+
+// Conductor of complex index eta + i k over the incident medium's.
+float F_conductor(float c, float eta, float k) {
+  float excess = (eta - 1.0) * (eta + 1.0);
+  float s2 = (1.0 - c) * (1.0 + c);
+  float square = excess + c * c - k * k;  // Re (n cos theta_t)^2
+  float root = sqrt(0.5 * (sqrt(square * square + 4.0 * eta * eta * k * k) + abs(square)));
+  float other = root > 0.0 ? eta * k / root : 0.0;
+  float a = square > 0.0 ? root : other;  // n cos theta_t = a + i b; the smaller of a, b by division, not by difference
+  float b = square > 0.0 ? other : root;
+  float sum = (c + a) * (c + a) + b * b;
+  if (sum == 0.0) return 1.0;  // eta = 1, k = 0, c = 0: the grazing limit
+  float difference = c + a > 0.0 ? (excess - k * k + b * b) / (c + a) : 0.0;  // a - c
+  float Rs = (difference * difference + b * b) / sum;
+  float cb2 = c * c * b * b;
+  float Rp = Rs * ((c * a - s2) * (c * a - s2) + cb2) / ((c * a + s2) * (c * a + s2) + cb2);
+  return 0.5 * (Rs + Rp);
+}
+
+// Reflectance at normal incidence.
+float F0(float eta, float k) {
+  return ((eta - 1.0) * (eta - 1.0) + k * k) / ((eta + 1.0) * (eta + 1.0) + k * k);
+}
+
+// Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering", Eq. 15.
+float F_schlick(float c, float F0) {
+  float m = 1.0 - c;
+  float m2 = m * m;
+  return F0 + (1.0 - F0) * (m2 * m2 * m);
+}

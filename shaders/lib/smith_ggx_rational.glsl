@@ -1,0 +1,2 @@
+// Slot smith: GGX's Lambda needs no fit.
+#include "lib/smith_ggx_exact.glsl"
