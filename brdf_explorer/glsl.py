@@ -52,7 +52,7 @@ def assemble(path, slots=None, generated=None, dialect="330 core"):
 
     def include(name, chain):
         if name in chain:
-            raise Invalid(f"{chain[-1]}: include loop: {' -> '.join([*chain[chain.index(name):], name])}")
+            raise Invalid(f"{chain[-1]}: include loop: {' -> '.join([*chain[chain.index(name) :], name])}")
         if name in seen:
             return
         seen.add(name)

@@ -15,6 +15,13 @@ PACKAGES = (
     "on Debian or Ubuntu: apt install libegl1 libgl1-mesa-dri; on Fedora: dnf install mesa-libEGL mesa-dri-drivers; "
     "on Arch: pacman -S mesa libglvnd"
 )
+BLENDING = {
+    "over": ((moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ONE, moderngl.ONE), moderngl.FUNC_ADD),
+    "premultiplied": ((moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA), moderngl.FUNC_ADD),
+    "max": (moderngl.ADDITIVE_BLENDING, moderngl.MAX),
+    # the source's alpha is its share of a running mean; the target's stays
+    "mean": ((moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE), moderngl.FUNC_ADD),
+}
 ROW = 1024  # width of the tables that `evaluate` uploads
 
 
@@ -87,7 +94,9 @@ class Gpu:
         self.ctx = ctx
         self.programs = {}
         self.targets = {}
+        self.buffers = {}
         self.arrays = {}
+        self.environment = None
 
     @property
     def device(self):
@@ -106,37 +115,65 @@ class Gpu:
                 raise Invalid(stage.explain(_log(str(error)))) from None
         return self.programs[key]
 
-    def target(self, name, size, components=4, dtype="f4", depth=False):
+    def target(self, name, size, components=4, dtype="f4"):
         """The framebuffer of that name with one texture; kept while size and format stay, else made anew."""
-        form = (tuple(size), components, dtype, depth)
+        return self._kept(
+            name, (tuple(size), components, dtype), lambda: [self.ctx.texture(size, components, dtype=dtype)]
+        )
+
+    def multisampled(self, name, size, samples=4):
+        """The framebuffer of that name with 8-bit RGBA and depth, several samples a pixel; `resolve` it to read it."""
+        samples = min(samples, self.ctx.max_samples)
+        return self._kept(
+            name,
+            (tuple(size), samples),
+            lambda: [
+                self.ctx.renderbuffer(size, 4, samples=samples),
+                self.ctx.depth_renderbuffer(size, samples=samples),
+            ],
+        )
+
+    def _kept(self, name, form, make):
         if name in self.targets:
-            framebuffer, old = self.targets[name]
+            framebuffer, attachments, old = self.targets[name]
             if old == form:
                 return framebuffer
-            framebuffer.color_attachments[0].release()
-            framebuffer.release()
-        texture = self.ctx.texture(size, components, dtype=dtype)
-        buffer = self.ctx.depth_renderbuffer(size) if depth else None
-        framebuffer = self.ctx.framebuffer([texture], buffer)
-        self.targets[name] = (framebuffer, form)
+            for resource in (framebuffer, *attachments):
+                resource.release()
+        attachments = make()
+        framebuffer = self.ctx.framebuffer(attachments[:1], *attachments[1:])
+        self.targets[name] = (framebuffer, attachments, form)
         return framebuffer
 
-    def texture(self, array, filter="nearest", repeat_x=False):
-        """A float32 or uint8 texture of an array (H, W) or (H, W, C), first row at v = 0."""
-        array = np.ascontiguousarray(array if array.dtype == np.uint8 else array.astype(np.float32))
+    def resolve(self, multisampled, target):
+        """Average the samples of a multisampled framebuffer into a target of the same size."""
+        self.ctx.copy_framebuffer(target, multisampled)
+
+    def texture(self, array):
+        """A float32 texture of an array (H, W) or (H, W, C), its first row the first of texelFetch, not filtered."""
+        array = np.ascontiguousarray(array, dtype=np.float32)
         components = array.shape[2] if array.ndim == 3 else 1
-        dtype = "f1" if array.dtype == np.uint8 else "f4"
-        texture = self.ctx.texture((array.shape[1], array.shape[0]), components, array.tobytes(), dtype=dtype, alignment=1)
-        mode = moderngl.NEAREST if filter == "nearest" else moderngl.LINEAR
-        texture.filter = (mode, mode)
-        texture.repeat_x, texture.repeat_y = repeat_x, False
+        texture = self.ctx.texture((array.shape[1], array.shape[0]), components, array.tobytes(), dtype="f4")
+        texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
         return texture
 
-    def draw(self, program, target, uniforms=None, textures=None, vertices=3, index=None, instances=1):
+    def draw(
+        self,
+        program,
+        target,
+        uniforms=None,
+        textures=None,
+        *,
+        vertices=3,
+        index=None,
+        instances=1,
+        blend=None,
+        depth=False,
+    ):
         """Draw attribute-less triangles (by default the one that fills the target) or those of an index buffer.
 
         uniforms: name -> number, tuple, or a Declared instance for a struct; a name the compiler dropped is skipped.
-        textures: name -> texture.
+        textures: name -> texture. blend: a key of BLENDING. depth: hide what lies behind.
         """
         for name, value in (uniforms or {}).items():
             set_uniform(program, name, value)
@@ -148,6 +185,10 @@ class Gpu:
         if key not in self.arrays:
             self.arrays[key] = self.ctx.vertex_array(program, [], index_buffer=index)
         target.use()
+        ctx = self.ctx
+        ctx.enable_only((moderngl.BLEND if blend else 0) | (moderngl.DEPTH_TEST if depth else 0))
+        if blend:
+            ctx.blend_func, ctx.blend_equation = BLENDING[blend]
         self.arrays[key].render(moderngl.TRIANGLES, vertices=-1 if index else vertices, instances=instances)
 
     def pixels(self, target):

@@ -142,4 +142,3 @@ class Model(Declared):
     def slopes(self):
         """(alpha_x, alpha_y): scale of the half vectors' slopes over which f varies; grids and quadrature follow it."""
         return (1.0, 1.0)
-

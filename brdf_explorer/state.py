@@ -14,7 +14,7 @@ from pathlib import Path
 
 import tomli_w
 
-from .model import Choice, Declared, Invalid, Model, choice, declared, nearest, param, text
+from .model import Declared, Invalid, Model, choice, declared, nearest, param, text
 from .models import MODELS
 from .views import VIEWS
 
@@ -110,9 +110,7 @@ def material_table(material):
 
 def values(instance):
     """Parameter values as TOML holds them."""
-    return {
-        name: list(v) if isinstance(v := getattr(instance, name), tuple) else v for name in declared(instance)
-    }
+    return {name: list(v) if isinstance(v := getattr(instance, name), tuple) else v for name in declared(instance)}
 
 
 def loads(text, where="preset", base=None):
@@ -143,9 +141,7 @@ def loads(text, where="preset", base=None):
         tables = tree["materials"]
         if not isinstance(tables, list) or not tables:
             raise Invalid(f"{where}: materials is not a list of tables [[materials]]")
-        changes["materials"] = tuple(
-            material_from(table, f"{where}: materials[{i}]") for i, table in enumerate(tables)
-        )
+        changes["materials"] = tuple(material_from(table, f"{where}: materials[{i}]") for i, table in enumerate(tables))
         changes["active"] = 0
     if "active" in tree:
         count = len(changes.get("materials", base.materials))
@@ -205,7 +201,10 @@ def load(source, base=None):
     if not path.exists():
         hint = nearest(source, list(known)) if not path.suffix and path.parent == Path(".") else ""
         raise Invalid(f"{source}: no such preset or file{hint}")
-    return loads(preset_text(path), str(source), base)
+    state = loads(preset_text(path), str(source), base)
+    if state.light.file and not Path(state.light.file).is_absolute():
+        state = replace(state, light=replace(state.light, file=str(path.resolve().parent / state.light.file)))
+    return state
 
 
 def preset_text(path):

@@ -1,0 +1,5 @@
+"""Slot tonemap: none; what is above 1 is cut off."""
+
+
+def tonemap(color):
+    return color

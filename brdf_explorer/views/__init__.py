@@ -1,0 +1,7 @@
+"""The views, one module each. `VIEWS` lists them by name."""
+
+from .lobe import Lobe
+from .polar import Polar
+from .sphere import Sphere
+
+VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar)}

@@ -1,0 +1,151 @@
+"""The lobe of f over directions to the light, in 3D."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..glsl import assemble
+from ..model import choice, param
+from .diagram import QUANTITIES, arrow, luminance, nice_step, number, powers_below, radius
+from .lines import draw_lines
+from .picture import PALETTES, Label, Picture, View, rgb
+from .table import NODES, RAYS, table
+
+BAR = 76  # points at the right for the legend
+
+
+@dataclass(frozen=True)
+class Lobe(View):
+    """The lobe of f or f cos over all directions to the light, for one viewer."""
+
+    title = "Lobe"
+
+    quantity: str = choice("f", ("f", "f_cos"), "what the radius shows: f, or f times the cosine at the light")
+    radius: str = choice("linear", ("linear", "log"), "scale of the radius")
+    decades: int = param(4, 1, 8, "decades that a logarithmic radius shows below the peak")
+    azimuth: float = param(-60.0, -180.0, 180.0, "azimuth of the camera", unit="deg")
+    elevation: float = param(20.0, 0.0, 90.0, "height of the camera over the surface", unit="deg")
+    zoom: float = param(1.0, 0.2, 50.0, "size of the lobe", scale="log")
+
+    def shows(self, state):
+        return (self, state.model, state.directions, state.look.theme)
+
+    def pictures(self, gpu, state, size, scale=1.0):
+        colors = PALETTES[state.look.theme]
+        values = table(gpu, state.model, state.directions)
+        cos = values.grid.wi[..., 2] if self.quantity == "f_cos" else 1.0
+        peak = float((luminance(values.f) * cos).max())
+        share = 1 / peak if peak > 0 else 0.0
+        target = gpu.target("lobe", size, 4, "f1")
+        target.clear(*rgb(colors["paper"]), 1.0)
+        camera = Camera(self, size, scale)
+        labels = []
+
+        def lines(polylines, color, width, opacity=1.0):
+            draw_lines(gpu, target, [camera.pixels(line) for line in polylines], colors[color], width * scale, opacity)
+
+        def text(words, at, color, anchor=(0.5, 0.5), points=13.0):
+            labels.append(Label(words, float(at[0]), size[1] - float(at[1]), colors[color], anchor, points))
+
+        turn = np.radians(np.arange(0, 361, 3))
+        ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(turn.size)], axis=-1)
+        lines([ring * r for r in (0.25, 0.5, 0.75)] + [[-ring[i], ring[i]] for i in range(0, 60, 10)], "grid", 1.0)
+        lines([ring], "muted", 1.0)
+
+        mirror = values.wo * [-1, -1, 1]
+        pointers = [("n", np.array([0, 0, 1.0]), "ink"), ("ωo", values.wo, "accent"), ("ωr", mirror, "muted")]
+        heads = {
+            name: arrow(camera.pixels([[0, 0, 0]])[0], camera.pixels([1.12 * w])[0], scale) for name, w, _ in pointers
+        }
+
+        def pointer(opacity):
+            for name, _, color in pointers:
+                draw_lines(gpu, target, heads[name], colors[color], 1.6 * scale, opacity)
+
+        theta, wi, f = values.plane()
+        profile = luminance(f) * (wi[:, 2] if self.quantity == "f_cos" else 1.0) * share
+        outline = wi * radius(profile, self.radius, self.decades)[:, None]
+        pointer(1.0)
+        self.draw_surface(gpu, target, values, camera, share)
+        lines([outline], "ink", 1.0, 0.35)
+        pointer(0.25)  # seen through the lobe
+        for name, w, color in pointers:
+            text(name, camera.pixels([1.2 * w])[0], color)
+
+        self.draw_bar(gpu, target, size, scale, peak, text)
+        note = "albedo " + "  ".join(f"{a:.3f}" for a in values.albedo)
+        yield Picture(target, labels=labels, note=note)
+
+    def draw_surface(self, gpu, target, values, camera, share):
+        """The lobe's triangles over the target, edges smoothed by several samples a pixel."""
+        samples = gpu.multisampled("lobe.samples", target.size)
+        samples.clear()
+        vertex = assemble("views/lobe.vert", {"quantity": self.quantity, "radius": self.radius})
+        program = gpu.program(assemble("views/lobe.frag"), vertex)
+        uniforms = {**camera.uniforms(), "share": share, "decades": float(self.decades)}
+        textures = {"directions": values.directions, "values": values.target.color_attachments[0]}
+        gpu.draw(program, samples, uniforms, textures, index=surface(gpu), depth=True)
+        flat = gpu.target("lobe.flat", target.size, 4, "f1")
+        gpu.resolve(samples, flat)
+        over = gpu.program(assemble("views/over.frag"))
+        gpu.draw(over, target, {}, {"picture": flat.color_attachments[0]}, blend="premultiplied")
+
+    def draw_bar(self, gpu, target, size, scale, peak, text):
+        """The legend: the map's colours with the values they stand for."""
+        top = size[1] - 44 * scale
+        bottom = max(top - 180 * scale, 24 * scale)
+        if top - bottom < 60 * scale:
+            return
+        left = size[0] - (BAR - 4) * scale
+        box = (left, bottom, left + 10 * scale, top)
+        gpu.draw(gpu.program(assemble("views/colorbar.frag")), target, {"box": box}, blend="over")
+        text(QUANTITIES[self.quantity], (size[0] - 10 * scale, top + 20 * scale), "ink", (1.0, 0.5), 12.5)
+        step = nice_step(peak / 5) if peak > 0 else 1.0
+        ticks = np.arange(0, peak * 0.94, step) if self.radius == "linear" else powers_below(peak * 0.6, self.decades)
+        for value in [*ticks, peak]:
+            t = radius(np.array(value / peak if peak > 0 else 0.0), self.radius, self.decades)
+            text(number(value), (left + 16 * scale, bottom + float(t) * (top - bottom)), "muted", (0.0, 0.5), 11.5)
+
+
+class Camera:
+    """An orthographic camera that looks at the hemisphere; directions in the surface's frame, z up."""
+
+    def __init__(self, view, size, scale):
+        azimuth, elevation = np.radians(view.azimuth), np.radians(view.elevation)
+        ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
+        self.eye = np.array([ce * ca, ce * sa, se])
+        self.right = np.array([-sa, ca, 0.0])
+        self.up = np.array([-se * ca, -se * sa, ce])
+        self.size = size
+        # the box of the disc and of an upright arrow of length 1.25 fits beside the legend
+        low, high = -se, max(1.25 * ce, se)
+        room = np.array([size[0] - (BAR + 24) * scale, size[1] - 40 * scale])
+        self.unit = max(min(room[0] / 2.5, room[1] / (high - low)), 1.0) * view.zoom
+        self.center = np.array([(size[0] - BAR * scale) / 2, size[1] / 2 - self.unit * (low + high) / 2])
+
+    def pixels(self, points):
+        """Pixels (n, 2) from the bottom left of points (n, 3)."""
+        points = np.asarray(points, dtype=float)
+        return self.center + self.unit * np.stack([points @ self.right, points @ self.up], axis=-1)
+
+    def uniforms(self):
+        lamp = self.eye + 0.6 * self.up - 0.5 * self.right
+        half = np.array(self.size) / 2
+        return {
+            "right": tuple(self.right),
+            "up": tuple(self.up),
+            "eye": tuple(self.eye),
+            "lamp": tuple(lamp / np.linalg.norm(lamp)),
+            "center": tuple(self.center / half - 1),
+            "unit": tuple(self.unit / half),
+        }
+
+
+def surface(gpu):
+    """Index buffer of the triangles between a table's texels; rays are joined around, kept with the Gpu."""
+    if "lobe" not in gpu.buffers:
+        ray, node = np.meshgrid(np.arange(RAYS), np.arange(NODES - 1), indexing="ij")
+        a, b = ray * NODES + node, (ray + 1) % RAYS * NODES + node
+        triangles = np.stack([a, a + 1, b, b, a + 1, b + 1], axis=-1)
+        gpu.buffers["lobe"] = gpu.ctx.buffer(triangles.astype("u4").tobytes())
+    return gpu.buffers["lobe"]

@@ -1,0 +1,131 @@
+"""The slice through the plane of incidence as a polar plot: f or f cos over the direction to the light."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model import choice, param
+from .diagram import QUANTITIES, arrow, luminance, nice_step, number, powers_below, radius
+from .lines import draw_lines
+from .picture import PALETTES, Curves, Label, Picture, View, rgb
+from .table import table
+
+MARGIN = 44  # points around the half disc, for the angles
+
+
+@dataclass(frozen=True)
+class Polar(View):
+    """The slice through the plane of incidence: f or f cos over the direction to the light, as a polar plot."""
+
+    title = "Polar slice"
+
+    quantity: str = choice("f", ("f", "f_cos"), "what the radius shows: f, or f times the cosine at the light")
+    radius: str = choice("linear", ("linear", "log"), "scale of the radius")
+    decades: int = param(4, 1, 8, "decades that a logarithmic radius shows below the peak")
+    curves: str = choice(
+        "materials", ("materials", "rgb"), "a curve for each material, or red, green and blue of the active one"
+    )
+    reference: str = choice("on", ("on", "off"), "float64 values as a thin line over the shader's float32 ones")
+
+    def shows(self, state):
+        materials = state.materials if self.curves == "materials" else (state.material,)
+        return (self, materials, state.directions, state.look.theme)
+
+    def slices(self, gpu, state):
+        """[(name, colour role or number, theta (n,), float32 values (n,), float64 values (n,))] of each curve."""
+        materials = state.materials if self.curves == "materials" else (state.material,)
+        found = []
+        for index, material in enumerate(materials):
+            t = table(gpu, material.model, state.directions)
+            theta, wi, f32 = t.plane()
+            f64 = material.model.f(t.wo, wi)
+            cos = wi[:, 2] if self.quantity == "f_cos" else 1.0
+            if self.curves == "rgb":
+                for c, channel in enumerate(("red", "green", "blue")):
+                    found.append((channel, channel, theta, f32[:, c] * cos, f64[:, c] * cos))
+            else:
+                found.append((material.name, index, theta, luminance(f32) * cos, luminance(f64) * cos))
+        return found
+
+    def table_of(self, gpu, state):
+        """The slices as Curves over theta in degrees; those of several materials are resampled to the finest one."""
+        slices = self.slices(gpu, state)
+        x = np.unique(np.concatenate([s[2] for s in slices]))
+        y = {}
+        for name, _, theta, f32, f64 in slices:
+            y[f"{name} float32"] = np.interp(x, theta, f32)
+            y[f"{name} float64"] = np.interp(x, theta, f64)
+        return Curves("theta_i [deg]", np.degrees(x), y)
+
+    def pictures(self, gpu, state, size, scale=1.0):
+        colors = PALETTES[state.look.theme]
+        width, height = size
+        target = gpu.target("polar", size, 4, "f1")
+        target.clear(*rgb(colors["paper"]), 1.0)
+        slices = self.slices(gpu, state)
+        peak = max(float(np.max(s[3])) for s in slices)
+        step = nice_step(peak / 3.5)
+        top = peak * 1.04 if self.radius == "log" else max(peak * 1.04, step)
+        extent = max(min(width / 2 - MARGIN * scale, height - (MARGIN + 26) * scale), 1.0)
+        center = np.array([width / 2, 30 * scale])
+        labels = []
+
+        def place(theta, radius):
+            return center + extent * radius[:, None] * np.stack([np.sin(theta), np.cos(theta)], axis=-1)
+
+        def text(words, at, color, anchor=(0.5, 0.5), points=12.0):
+            labels.append(Label(words, float(at[0]), height - float(at[1]), color, anchor, points))
+
+        def reach(values):
+            return radius(values / top, self.radius, self.decades)
+
+        # the angle grid, its rings at round values
+        arc = np.linspace(-np.pi / 2, np.pi / 2, 181)
+        spokes = np.radians(np.arange(-90, 91, 15))
+        if self.radius == "linear":
+            rings = np.arange(1, int(top / step) + 1) * step
+        else:
+            rings = powers_below(top, self.decades)
+        rings = rings[reach(rings) > 0.08]
+        grid = [place(arc, np.full(arc.size, r)) for r in reach(rings)]
+        grid += [place(np.full(2, a), np.array([0.0, 1.0])) for a in spokes]
+        draw_lines(gpu, target, grid, colors["grid"], scale)
+        draw_lines(gpu, target, [place(arc, np.ones(arc.size))], colors["muted"], scale)
+        draw_lines(gpu, target, [place(np.radians([-90, 90.0]), np.ones(2))], colors["ink"], 1.2 * scale)
+        for a in spokes[::2]:
+            text(
+                f"{abs(round(np.degrees(a)))}°",
+                place(np.array([a]), np.array([1 + 17 * scale / extent]))[0],
+                colors["muted"],
+            )
+
+        # the viewer, and where a mirror would send its ray
+        theta_o = np.radians(state.directions.theta_o)
+        draw_lines(
+            gpu, target, arrow(center, place(np.array([theta_o]), np.ones(1))[0], scale), colors["accent"], 1.6 * scale
+        )
+        dashes = np.linspace(0, 1, 41).reshape(-1)
+        mirror = [place(np.full(2, -theta_o), dashes[i : i + 2]) for i in range(0, 40, 2)]
+        draw_lines(gpu, target, mirror, colors["accent"], scale)
+
+        for _, key, theta, f32, _ in slices:
+            color = colors["curves"][key % len(colors["curves"])] if isinstance(key, int) else colors[key]
+            draw_lines(gpu, target, [place(theta, reach(f32))], color, 3.2 * scale)
+        if self.reference == "on":
+            for _, _, theta, _, f64 in slices:
+                draw_lines(gpu, target, [place(theta, reach(f64))], colors["reference"], 1.0 * scale)
+
+        for value, r in zip(rings, reach(rings), strict=True):
+            at = place(np.array([np.pi / 2]), np.array([r]))[0]
+            text(number(value), at - [0, 12 * scale], colors["muted"], points=11.0)
+        at = place(np.array([theta_o]), np.array([1 + 34 * scale / extent]))[0]
+        text("ωo", at, colors["accent"], points=13.0)
+        lines = [(QUANTITIES[self.quantity], colors["ink"])]
+        for name, key, *_ in slices:
+            lines.append((name, colors["curves"][key % len(colors["curves"])] if isinstance(key, int) else colors[key]))
+        if self.reference == "on":
+            lines.append(("thin: float64", colors["muted"]))
+        for i, (words, color) in enumerate(lines):
+            text(words, (12 * scale, height - (16 + 18 * i) * scale), color, (0.0, 0.5), 12.5)
+        note = f"peak {number(peak, 4)} / sr at θo = {state.directions.theta_o:g}°"
+        yield Picture(target, labels=labels, note=note)

@@ -1,0 +1,95 @@
+"""A sphere of the material, lit by a directional light and by an environment."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..environment import environment
+from ..glsl import of_model
+from ..model import param
+from .picture import Picture, View
+
+SMOOTH = 16  # jittered passes after which edges and highlights of a directional light are smooth
+R2 = np.array([0.7548776662466927, 0.5698402909980532])  # Roberts 2018: its multiples fill the square evenly
+
+
+@dataclass(frozen=True)
+class Sphere(View):
+    """A sphere of the material under the light of the state."""
+
+    title = "Sphere"
+
+    noise: float = param(0.01, 0.001, 0.1, "standard error of a pixel, over the mean, that ends sampling", scale="log")
+    samples: int = param(1024, 16, 65536, "most samples a pixel", scale="log")
+
+    def shows(self, state):
+        return (self, state.model, state.light)
+
+    def radius(self, size):
+        """Radius of the sphere in a picture of that size, pixels; its centre is the picture's."""
+        return 0.46 * min(size)
+
+    def pictures(self, gpu, state, size, scale=1.0):
+        light = state.light
+        uniforms, textures = {"material": state.model}, {}
+        lights = []
+        if light.irradiance > 0:
+            lights.append("directional")
+            uniforms |= {"light": toward(light), "irradiance": light.irradiance}
+        if light.environment != "none" and light.gain > 0:
+            lights.append("environment")
+            uniforms |= {"turn": turn(light), "gain": light.gain}
+            textures = environment_textures(gpu, light)
+        lighting = "both" if len(lights) == 2 else lights[0] if lights else "dark"
+        program = gpu.program(of_model("views/sphere.frag", state.model, slots={"lighting": lighting}))
+        uniforms |= {"center": (size[0] / 2, size[1] / 2), "radius": self.radius(size)}
+        target = gpu.target("sphere", size)
+        most = self.samples if textures else SMOOTH
+        noise, half = None, None
+        for n in range(1, most + 1):
+            jitter = (R2 * (n - 1) + 0.5) % 1.0 - 0.5
+            uniforms |= {"jitter": tuple(jitter), "share": 1 / n, "pass": n - 1}
+            gpu.draw(program, target, uniforms, textures, blend="mean" if n > 1 else None)
+            if textures and n >= 16 and n & (n - 1) == 0:
+                mean = gpu.pixels(target)
+                noise = standard_error(mean, half) if half is not None else None
+                half = mean
+            done = n == most or noise is not None and noise <= self.noise
+            note = f"{n} sample{'s' * (n > 1)} a pixel" + (f", noise {100 * noise:.2g} %" if noise is not None else "")
+            yield Picture(target, linear=True, note=note, done=done)
+            if done:
+                return
+
+
+def standard_error(mean, half):
+    """Standard error of a pixel of a running mean over the mean of all, from the mean of the first half of its passes.
+
+    The halves are independent, and their means differ by twice what the whole differs from the first, so that difference has
+    the variance of the whole's mean.
+    """
+    covered = mean[..., 3] > 0
+    average = mean[covered][:, :3].mean()
+    return float(np.sqrt(np.mean((mean[covered] - half[covered])[:, :3] ** 2)) / average) if average > 0 else 0.0
+
+
+def toward(light):
+    """Unit vector to the directional light in the eye's frame: x to the right, y up, z to the eye."""
+    theta, phi = np.radians(light.theta), np.radians(light.phi)
+    return (np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta))
+
+
+def turn(light):
+    """The rotation about y from the eye's frame to the environment's, column by column."""
+    c, s = np.cos(np.radians(light.rotation)), np.sin(np.radians(light.rotation))
+    return (c, 0.0, -s, 0.0, 1.0, 0.0, s, 0.0, c)
+
+
+def environment_textures(gpu, light):
+    """The textures of the light's environment, kept with the Gpu until another one is asked for."""
+    found = environment(light.environment, light.file)
+    if gpu.environment is None or gpu.environment[0] is not found:
+        if gpu.environment:
+            for texture in gpu.environment[1].values():
+                texture.release()
+        gpu.environment = (found, {"map": gpu.texture(found.map), "cdf": gpu.texture(found.cdf)})
+    return gpu.environment[1]

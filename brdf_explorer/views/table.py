@@ -1,0 +1,71 @@
+"""f over a grid that follows the lobe: the one table that lobe, slice, CSV and the albedo shown beside them read."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..glsl import of_model
+from ..measure.grid import Grid, direction, grid, plane_of_incidence
+
+RAYS = 128
+NODES = 65
+EDGE = 1 - 1e-5  # the last node, just above the horizon: on it f is 0 and its limit could not be drawn
+
+
+@dataclass(frozen=True)
+class Table:
+    """float32 f of the GLSL on a Grid. Rays 0 and RAYS / 2 are the plane of incidence."""
+
+    grid: Grid
+    t: np.ndarray  # (nodes,)
+    wo: np.ndarray  # (3,)
+    phi: float  # azimuth of wo, radians
+    directions: object  # texture of wi, a row a ray
+    target: object  # framebuffer of (f, 0)
+    gpu: object
+
+    @cached_property
+    def f(self):
+        """Values read back, (rays, nodes, 3)."""
+        return self.gpu.pixels(self.target)[::-1, :, :3].astype(float)
+
+    @cached_property
+    def weight(self):
+        """Solid angle per node (rays, nodes), sr, by Simpson's rule along rays: sum f weight integrates f."""
+        nodes = self.t.size
+        simpson = np.where(np.arange(nodes) % 2 == 1, 4.0, 2.0)
+        simpson[[0, -1]] = 1.0
+        return self.grid.density * simpson * ((self.t[1] - self.t[0]) / 3 * 2 * np.pi / len(self.grid.wi))
+
+    @property
+    def albedo(self):
+        """Directional albedo by this table, (3,); `measure.albedo` is the accurate one."""
+        return np.einsum("ptc,pt->c", self.f, self.weight * self.grid.wi[..., 2])
+
+    def plane(self):
+        """The plane of incidence from horizon to horizon: theta (n,), wi (n, 3), f (n, 3).
+
+        theta rises from the far side, where the mirror direction is at -theta_o, to the viewer's side.
+        """
+        half = len(self.grid.wi) // 2
+        # ray 0 tilts facets away from the viewer, so it holds the directions beyond the mirror direction
+        wi = np.concatenate([self.grid.wi[0, ::-1], self.grid.wi[half, 1:]])
+        f = np.concatenate([self.f[0, ::-1], self.f[half, 1:]])
+        side = wi[:, 0] * np.cos(self.phi) + wi[:, 1] * np.sin(self.phi)
+        return np.arctan2(side, wi[:, 2]), wi, f
+
+
+def table(gpu, model, directions, rays=RAYS, nodes=NODES):
+    """The Table of a model for the viewer's Directions."""
+    phi = np.radians(directions.phi_o)
+    wo = direction(np.radians(directions.theta_o), phi)
+    alpha = model.slopes()
+    psi = plane_of_incidence(phi, alpha) + 2 * np.pi * np.arange(rays) / rays
+    t = np.linspace(0.0, EDGE, nodes)
+    g = grid(wo, alpha, t, psi)
+    texture = gpu.texture(np.concatenate([g.wi, np.ones((rays, nodes, 1))], axis=-1))
+    target = gpu.ctx.framebuffer([gpu.ctx.texture((nodes, rays), 4, dtype="f4")])
+    program = gpu.program(of_model("views/table.frag", model))
+    gpu.draw(program, target, {"material": model, "wo": tuple(wo)}, {"directions": texture})
+    return Table(g, t, wo, phi, texture, target, gpu)

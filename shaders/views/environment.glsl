@@ -1,0 +1,26 @@
+// Radiance that the surface sends to the eye from all around, by one direction from the BSDF and one from the map a pass, weighted by the balance
+// heuristic. Veach and Guibas 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", Eq. 14.
+#include "lib/environment.glsl"
+#include "lib/random.glsl"
+
+uniform sampler2D map;
+uniform sampler2D cdf;
+uniform mat3 turn;  // from the eye's frame to the map's
+uniform float gain;
+
+vec3 radiance_environment(vec3 wo, mat3 frame) {
+  uvec2 pixel = uvec2(gl_FragCoord.xy);
+  vec3 wi;
+  vec3 weight = sample_f(wo, random2(pixel, pass, STREAM_BSDF), wi);
+  vec3 sum = vec3(0.0);
+  if (wi.z > 0.0) {
+    vec3 world = turn * (frame * wi);
+    float own = pdf(wo, wi);
+    sum += weight * environment_radiance(map, world) * (own / (own + pdf_environment(map, world)));
+  }
+  float other;
+  vec3 world = sample_environment(map, cdf, random2(pixel, pass, STREAM_LIGHT), other);
+  wi = (world * turn) * frame;
+  if (wi.z > 0.0) sum += f(wo, wi) * environment_radiance(map, world) * (wi.z / (other + pdf(wo, wi)));
+  return gain * sum;
+}

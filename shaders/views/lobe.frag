@@ -1,0 +1,15 @@
+// The lobe's surface: coloured by value, shaded by its true normal under a lamp at the eye's shoulder.
+#include "lib/colormap.glsl"
+
+uniform vec3 eye;
+uniform vec3 lamp;
+in vec3 normal;
+in float height;
+out vec4 color;
+
+void main() {
+  vec3 n = normalize(normal);
+  if (dot(n, eye) < 0.0) n = -n;
+  float shade = 0.45 + 0.55 * max(dot(n, lamp), 0.0);
+  color = vec4(viridis(height) * shade, 1.0);
+}

@@ -1,0 +1,1 @@
+float quantity(float f, vec3 wi) { return f * wi.z; }

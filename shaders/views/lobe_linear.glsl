@@ -1,0 +1,1 @@
+float radius(float share, float decades) { return share; }

@@ -1,0 +1,29 @@
+// A sphere under an orthographic eye at +z: one ray a pixel and pass, its normal in closed form.
+#include "models/{model}.glsl"
+
+uniform vec2 center;   // pixels
+uniform float radius;  // pixels
+uniform vec2 jitter;   // of the ray within its pixel
+uniform float share;   // of this pass in the running mean; 1 for the first, which writes coverage instead
+uniform uint pass;
+out vec4 color;
+
+#include "views/sphere_{lighting}.glsl"
+
+void main() {
+  float coverage = clamp(radius + 0.5 - distance(gl_FragCoord.xy, center), 0.0, 1.0);
+  color = vec4(0.0);
+  if (coverage == 0.0) return;
+  vec2 p = (gl_FragCoord.xy + jitter - center) / radius;
+  float edge = 1.0 - 0.5 / radius;  // a pixel on the rim shows the sphere half a pixel inside, where its cosine is not 0
+  float r = length(p);
+  if (r > edge) {
+    p *= edge / r;
+    r = edge;
+  }
+  vec3 normal = vec3(p, sqrt((1.0 - r) * (1.0 + r)));
+  vec3 tangent = normalize(vec3(normal.z, 0.0, -normal.x));  // along the parallels
+  mat3 frame = mat3(tangent, cross(normal, tangent), normal);
+  vec3 wo = vec3(frame[0].z, frame[1].z, frame[2].z);  // the eye, (0, 0, 1)
+  color = vec4(coverage * radiance(wo, frame), share < 1.0 ? share : coverage);
+}

@@ -1,0 +1,4 @@
+// Slot lighting: an environment.
+#include "views/environment.glsl"
+
+vec3 radiance(vec3 wo, mat3 frame) { return radiance_environment(wo, frame); }
