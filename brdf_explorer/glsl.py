@@ -43,7 +43,17 @@ class Source:
 
 def assemble(path, slots=None, generated=None, dialect="330 core"):
     """The Source of the shader `path` with its slots filled. Raises Invalid for a missing file, slot or a loop."""
-    slots, generated = slots or {}, generated or {}
+    return _assemble(path, tuple((slots or {}).items()), tuple((generated or {}).items()), dialect)
+
+
+def reload():
+    """Read all files anew when they are next asked for."""
+    _assemble.cache_clear()
+
+
+@cache
+def _assemble(path, slots, generated, dialect):
+    slots, generated = dict(slots), dict(generated)
     text, lines, files = [], [], []
     preamble = PREAMBLE[dialect].splitlines()
     text += preamble
@@ -82,32 +92,27 @@ def filled(path, slots, where):
 
 def read(name, chain):
     try:
-        return text_of(name, (SHADERS / name).stat().st_mtime_ns)
+        return (SHADERS / name).read_text(encoding="utf-8")
     except OSError:
         where = f"included by {chain[-1]}" if chain else "asked for"
         raise Invalid(f"shaders/{name}: no such file, {where}") from None
 
 
 @cache
-def text_of(name, changed):
-    return (SHADERS / name).read_text(encoding="utf-8")
+def params_glsl(name, cls):
+    """GLSL that declares the params of a class: `struct Name {...}; uniform Name name;`, empty for none."""
+    params = declared(cls, Param)
+    if not params:
+        return ""
+    body = "".join(f"  {p.glsl} {n};  // {p.doc}{p.unit and f', {p.unit}'}\n" for n, p in params.items())
+    return f"struct {name.title()} {{\n{body}}};\nuniform {name.title()} {name};\n"
 
 
-def params_glsl(structs):
-    """GLSL that declares the params of each class as `struct Name {...}; uniform Name name;`. structs: name -> class."""
-    text = ""
-    for name, cls in structs.items():
-        if params := declared(cls, Param):
-            body = "".join(f"  {p.glsl} {n};  // {p.doc}{p.unit and f', {p.unit}'}\n" for n, p in params.items())
-            text += f"struct {name.title()} {{\n{body}}};\nuniform {name.title()} {name};\n"
-    return text
-
-
-def of_model(path, model, dialect="330 core", slots=None, structs=None, generated=None):
+def of_model(path, model, dialect="330 core", slots=None, generated=None):
     """A shader that uses the model: {model} and its choices fill slots, `params.glsl` declares `material`."""
     return assemble(
         path,
         {"model": model.name(), **model.choices(), **(slots or {})},
-        {"params.glsl": params_glsl({"material": type(model), **(structs or {})}), **(generated or {})},
+        {"params.glsl": params_glsl("material", type(model)), **(generated or {})},
         dialect,
     )

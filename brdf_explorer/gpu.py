@@ -16,11 +16,11 @@ PACKAGES = (
     "on Arch: pacman -S mesa libglvnd"
 )
 BLENDING = {
-    "over": ((moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ONE, moderngl.ONE), moderngl.FUNC_ADD),
-    "premultiplied": ((moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA), moderngl.FUNC_ADD),
-    "max": (moderngl.ADDITIVE_BLENDING, moderngl.MAX),
+    "over": (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ONE, moderngl.ONE),
+    "premultiplied": (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA),
+    "add": (moderngl.ONE, moderngl.ONE),
     # the source's alpha is its share of a running mean; the target's stays
-    "mean": ((moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE), moderngl.FUNC_ADD),
+    "mean": (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE),
 }
 ROW = 1024  # width of the tables that `evaluate` uploads
 
@@ -115,23 +115,14 @@ class Gpu:
                 raise Invalid(stage.explain(_log(str(error)))) from None
         return self.programs[key]
 
-    def target(self, name, size, components=4, dtype="f4"):
-        """The framebuffer of that name with one texture; kept while size and format stay, else made anew."""
-        return self._kept(
-            name, (tuple(size), components, dtype), lambda: [self.ctx.texture(size, components, dtype=dtype)]
-        )
+    def target(self, name, size, components=4, dtype="f4", depth=False):
+        """The framebuffer of that name with one texture, and depth if asked; kept while size and format stay, clear at first."""
 
-    def multisampled(self, name, size, samples=4):
-        """The framebuffer of that name with 8-bit RGBA and depth, several samples a pixel; `resolve` it to read it."""
-        samples = min(samples, self.ctx.max_samples)
-        return self._kept(
-            name,
-            (tuple(size), samples),
-            lambda: [
-                self.ctx.renderbuffer(size, 4, samples=samples),
-                self.ctx.depth_renderbuffer(size, samples=samples),
-            ],
-        )
+        def make():
+            buffers = [self.ctx.depth_renderbuffer(size)] if depth else []
+            return [self.ctx.texture(size, components, dtype=dtype), *buffers]
+
+        return self._kept(name, (tuple(size), components, dtype, depth), make)
 
     def _kept(self, name, form, make):
         if name in self.targets:
@@ -142,12 +133,9 @@ class Gpu:
                 resource.release()
         attachments = make()
         framebuffer = self.ctx.framebuffer(attachments[:1], *attachments[1:])
+        framebuffer.clear()
         self.targets[name] = (framebuffer, attachments, form)
         return framebuffer
-
-    def resolve(self, multisampled, target):
-        """Average the samples of a multisampled framebuffer into a target of the same size."""
-        self.ctx.copy_framebuffer(target, multisampled)
 
     def texture(self, array):
         """A float32 texture of an array (H, W) or (H, W, C), its first row the first of texelFetch, not filtered."""
@@ -169,11 +157,13 @@ class Gpu:
         instances=1,
         blend=None,
         depth=False,
+        box=None,
     ):
         """Draw attribute-less triangles (by default the one that fills the target) or those of an index buffer.
 
         uniforms: name -> number, tuple, or a Declared instance for a struct; a name the compiler dropped is skipped.
-        textures: name -> texture. blend: a key of BLENDING. depth: hide what lies behind.
+        textures: name -> texture. blend: a key of BLENDING. depth: hide what lies behind. box: left, bottom, right, top in
+        pixels, outside of which nothing is drawn.
         """
         for name, value in (uniforms or {}).items():
             set_uniform(program, name, value)
@@ -184,12 +174,17 @@ class Gpu:
         key = (program, index)
         if key not in self.arrays:
             self.arrays[key] = self.ctx.vertex_array(program, [], index_buffer=index)
-        target.use()
         ctx = self.ctx
         ctx.enable_only((moderngl.BLEND if blend else 0) | (moderngl.DEPTH_TEST if depth else 0))
         if blend:
-            ctx.blend_func, ctx.blend_equation = BLENDING[blend]
+            ctx.blend_func = BLENDING[blend]
+        if box is not None:
+            left, bottom, right, top = np.clip(np.round(box), 0, [*target.size, *target.size]).astype(int).tolist()
+            target.scissor = left, bottom, max(right - left, 0), max(top - bottom, 0)
+        target.use()
         self.arrays[key].render(moderngl.TRIANGLES, vertices=-1 if index else vertices, instances=instances)
+        if box is not None:
+            target.scissor = None
 
     def pixels(self, target):
         """The target's colours as an array (H, W, C), first row at the top."""

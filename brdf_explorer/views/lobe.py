@@ -7,10 +7,11 @@ import numpy as np
 from ..glsl import assemble
 from ..model import choice, param
 from .diagram import QUANTITIES, arrow, luminance, nice_step, number, powers_below, radius
-from .lines import draw_lines
-from .picture import PALETTES, Label, Picture, View, rgb
+from .lines import Stroke, draw_lines
+from .picture import PALETTES, R2, Label, Picture, View, rgb
 from .table import NODES, RAYS, table
 
+PASSES = 8  # jittered drawings whose mean has smooth edges
 BAR = 76  # points at the right for the legend
 
 
@@ -41,70 +42,86 @@ class Lobe(View):
         camera = Camera(self, size, scale)
         labels = []
 
-        def lines(polylines, color, width, opacity=1.0):
-            draw_lines(gpu, target, [camera.pixels(line) for line in polylines], colors[color], width * scale, opacity)
+        def stroke(points, color, width, opacity=1.0):
+            return Stroke(camera.pixels(points), colors[color], width * scale, opacity)
 
         def text(words, at, color, anchor=(0.5, 0.5), points=13.0):
             labels.append(Label(words, float(at[0]), size[1] - float(at[1]), colors[color], anchor, points))
 
         turn = np.radians(np.arange(0, 361, 3))
         ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(turn.size)], axis=-1)
-        lines([ring * r for r in (0.25, 0.5, 0.75)] + [[-ring[i], ring[i]] for i in range(0, 60, 10)], "grid", 1.0)
-        lines([ring], "muted", 1.0)
+        disc = [stroke(ring * r, "grid", 1.0) for r in (0.25, 0.5, 0.75)]
+        disc += [stroke([-ring[i], ring[i]], "grid", 1.0) for i in range(0, 60, 10)]
+        disc.append(stroke(ring, "muted", 1.0))
 
-        mirror = values.wo * [-1, -1, 1]
-        pointers = [("n", np.array([0, 0, 1.0]), "ink"), ("ωo", values.wo, "accent"), ("ωr", mirror, "muted")]
-        heads = {
-            name: arrow(camera.pixels([[0, 0, 0]])[0], camera.pixels([1.12 * w])[0], scale) for name, w, _ in pointers
-        }
+        def pointers(opacity):
+            strokes = []
+            for _, w, color in arrows:
+                line, head = arrow(*camera.pixels([0 * w, 1.12 * w]), scale)
+                strokes += [Stroke(points, colors[color], 1.6 * scale, opacity) for points in (line, head)]
+            return strokes
 
-        def pointer(opacity):
-            for name, _, color in pointers:
-                draw_lines(gpu, target, heads[name], colors[color], 1.6 * scale, opacity)
-
-        theta, wi, f = values.plane()
-        profile = luminance(f) * (wi[:, 2] if self.quantity == "f_cos" else 1.0) * share
-        outline = wi * radius(profile, self.radius, self.decades)[:, None]
-        pointer(1.0)
-        self.draw_surface(gpu, target, values, camera, share)
-        lines([outline], "ink", 1.0, 0.35)
-        pointer(0.25)  # seen through the lobe
-        for name, w, color in pointers:
+        arrows = [
+            ("ωr", values.wo * [-1, -1, 1], "muted"),
+            ("n", np.array([0, 0, 1.0]), "ink"),
+            ("ωo", values.wo, "accent"),
+        ]
+        for name, w, color in arrows:
             text(name, camera.pixels([1.2 * w])[0], color)
-
-        self.draw_bar(gpu, target, size, scale, peak, text)
+        _, wi, f = values.plane()
+        profile = luminance(f) * (wi[:, 2] if self.quantity == "f_cos" else 1.0) * share
+        outline = stroke(wi * radius(profile, self.radius, self.decades)[:, None], "ink", 1.0, 0.35)
+        below, above = [*disc, *pointers(1.0)], [outline, *pointers(0.25)]  # seen through the lobe
         note = "albedo " + "  ".join(f"{a:.3f}" for a in values.albedo)
-        yield Picture(target, labels=labels, note=note)
+        over = gpu.program(assemble("views/over.frag"))
+        for layer, done in self.surfaces(gpu, size, values, camera, share):
+            target.clear(*rgb(colors["paper"]), 1.0)
+            draw_lines(gpu, target, below)
+            picture = {"picture": layer.color_attachments[0]}
+            gpu.draw(over, target, {"share": 1.0}, picture, blend="premultiplied")
+            draw_lines(gpu, target, above)
+            legend = self.draw_bar(gpu, target, size, scale, peak, colors)
+            yield Picture(target, labels=labels + legend, note=note, done=done)
 
-    def draw_surface(self, gpu, target, values, camera, share):
-        """The lobe's triangles over the target, edges smoothed by several samples a pixel."""
-        samples = gpu.multisampled("lobe.samples", target.size)
-        samples.clear()
+    def surfaces(self, gpu, size, values, camera, share):
+        """The lobe's triangles as (framebuffer of colour and coverage, done): one drawing, then the mean of several."""
         vertex = assemble("views/lobe.vert", {"quantity": self.quantity, "radius": self.radius})
         program = gpu.program(assemble("views/lobe.frag"), vertex)
-        uniforms = {**camera.uniforms(), "share": share, "decades": float(self.decades)}
+        add = gpu.program(assemble("views/over.frag"))
         textures = {"directions": values.directions, "values": values.target.color_attachments[0]}
-        gpu.draw(program, samples, uniforms, textures, index=surface(gpu), depth=True)
-        flat = gpu.target("lobe.flat", target.size, 4, "f1")
-        gpu.resolve(samples, flat)
-        over = gpu.program(assemble("views/over.frag"))
-        gpu.draw(over, target, {}, {"picture": flat.color_attachments[0]}, blend="premultiplied")
+        uniforms = {"share": share, "decades": float(self.decades)}
+        once = gpu.target("lobe.surface", size, 4, "f1", depth=True)
+        mean = gpu.target("lobe.mean", size, 4, "f2")
+        for n in range(PASSES):
+            jitter = (R2 * n + 0.5) % 1.0 - 0.5
+            once.clear()
+            gpu.draw(program, once, uniforms | camera.uniforms(jitter), textures, index=surface(gpu), depth=True)
+            if n == 0:
+                yield once, False
+                mean.clear()
+            gpu.draw(add, mean, {"share": 1 / PASSES}, {"picture": once.color_attachments[0]}, blend="add")
+        yield mean, True
 
-    def draw_bar(self, gpu, target, size, scale, peak, text):
-        """The legend: the map's colours with the values they stand for."""
+    def draw_bar(self, gpu, target, size, scale, peak, colors):
+        """Draw the legend, the map's colours, if there is room; its Labels, the values they stand for."""
         top = size[1] - 44 * scale
         bottom = max(top - 180 * scale, 24 * scale)
         if top - bottom < 60 * scale:
-            return
+            return []
         left = size[0] - (BAR - 4) * scale
         box = (left, bottom, left + 10 * scale, top)
-        gpu.draw(gpu.program(assemble("views/colorbar.frag")), target, {"box": box}, blend="over")
-        text(QUANTITIES[self.quantity], (size[0] - 10 * scale, top + 20 * scale), "ink", (1.0, 0.5), 12.5)
-        step = nice_step(peak / 5) if peak > 0 else 1.0
-        ticks = np.arange(0, peak * 0.94, step) if self.radius == "linear" else powers_below(peak * 0.6, self.decades)
+        gpu.draw(gpu.program(assemble("views/colorbar.frag")), target, {"box": box}, blend="over", box=box)
+        title = Label(QUANTITIES[self.quantity], size[0] - 10 * scale, 24 * scale, colors["ink"], (1.0, 0.5), 12.5)
+        if self.radius == "linear":
+            ticks = np.arange(0, peak * 0.94, nice_step(peak / 5)) if peak > 0 else []
+        else:
+            ticks = powers_below(peak * 0.6, self.decades)
+        labels = [title]
         for value in [*ticks, peak]:
-            t = radius(np.array(value / peak if peak > 0 else 0.0), self.radius, self.decades)
-            text(number(value), (left + 16 * scale, bottom + float(t) * (top - bottom)), "muted", (0.0, 0.5), 11.5)
+            height = float(radius(np.array(value / peak if peak > 0 else 0.0), self.radius, self.decades))
+            y = size[1] - bottom - height * (top - bottom)
+            labels.append(Label(number(value), left + 16 * scale, y, colors["muted"], (0.0, 0.5), 11.5))
+        return labels
 
 
 class Camera:
@@ -128,7 +145,8 @@ class Camera:
         points = np.asarray(points, dtype=float)
         return self.center + self.unit * np.stack([points @ self.right, points @ self.up], axis=-1)
 
-    def uniforms(self):
+    def uniforms(self, jitter):
+        """The camera's uniforms for a picture moved by `jitter` pixels."""
         lamp = self.eye + 0.6 * self.up - 0.5 * self.right
         half = np.array(self.size) / 2
         return {
@@ -136,7 +154,7 @@ class Camera:
             "up": tuple(self.up),
             "eye": tuple(self.eye),
             "lamp": tuple(lamp / np.linalg.norm(lamp)),
-            "center": tuple(self.center / half - 1),
+            "center": tuple((self.center + jitter) / half - 1),
             "unit": tuple(self.unit / half),
         }
 

@@ -39,6 +39,10 @@ PALETTES = {
 }
 
 
+# places within a pixel for passes that are averaged: Roberts 2018, the multiples of these fill the square evenly
+R2 = np.array([0.7548776662466927, 0.5698402909980532])
+
+
 def rgb(color):
     """The sRGB components in [0, 1] of a colour "#rrggbb"."""
     return tuple(int(color[i : i + 2], 16) / 255 for i in (1, 3, 5))

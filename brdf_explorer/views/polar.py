@@ -6,7 +6,7 @@ import numpy as np
 
 from ..model import choice, param
 from .diagram import QUANTITIES, arrow, luminance, nice_step, number, powers_below, radius
-from .lines import draw_lines
+from .lines import Stroke, draw_lines
 from .picture import PALETTES, Curves, Label, Picture, View, rgb
 from .table import table
 
@@ -64,68 +64,57 @@ class Polar(View):
         target.clear(*rgb(colors["paper"]), 1.0)
         slices = self.slices(gpu, state)
         peak = max(float(np.max(s[3])) for s in slices)
-        step = nice_step(peak / 3.5)
-        top = peak * 1.04 if self.radius == "log" else max(peak * 1.04, step)
+        top = 1.04 * peak if peak > 0 else 1.0
         extent = max(min(width / 2 - MARGIN * scale, height - (MARGIN + 26) * scale), 1.0)
         center = np.array([width / 2, 30 * scale])
+        theta_o = np.radians(state.directions.theta_o)
         labels = []
 
-        def place(theta, radius):
-            return center + extent * radius[:, None] * np.stack([np.sin(theta), np.cos(theta)], axis=-1)
-
-        def text(words, at, color, anchor=(0.5, 0.5), points=12.0):
-            labels.append(Label(words, float(at[0]), height - float(at[1]), color, anchor, points))
+        def place(theta, share):
+            theta, share = np.broadcast_arrays(theta, share)
+            return center + extent * share[..., None] * np.stack([np.sin(theta), np.cos(theta)], axis=-1)
 
         def reach(values):
             return radius(values / top, self.radius, self.decades)
 
-        # the angle grid, its rings at round values
-        arc = np.linspace(-np.pi / 2, np.pi / 2, 181)
-        spokes = np.radians(np.arange(-90, 91, 15))
+        def stroke(theta, share, color, points):
+            return Stroke(place(theta, share), colors.get(color, color), points * scale)
+
+        def text(words, at, color, anchor=(0.5, 0.5), points=12.0):
+            labels.append(Label(words, float(at[0]), height - float(at[1]), colors.get(color, color), anchor, points))
+
         if self.radius == "linear":
+            step = nice_step(top / 4)
             rings = np.arange(1, int(top / step) + 1) * step
         else:
             rings = powers_below(top, self.decades)
         rings = rings[reach(rings) > 0.08]
-        grid = [place(arc, np.full(arc.size, r)) for r in reach(rings)]
-        grid += [place(np.full(2, a), np.array([0.0, 1.0])) for a in spokes]
-        draw_lines(gpu, target, grid, colors["grid"], scale)
-        draw_lines(gpu, target, [place(arc, np.ones(arc.size))], colors["muted"], scale)
-        draw_lines(gpu, target, [place(np.radians([-90, 90.0]), np.ones(2))], colors["ink"], 1.2 * scale)
+        arc = np.linspace(-np.pi / 2, np.pi / 2, 181)
+        spokes = np.radians(np.arange(-90, 91, 15))
+        strokes = [stroke(arc, r, "grid", 1.0) for r in reach(rings)]
+        strokes += [stroke(a, np.array([0.0, 1.0]), "grid", 1.0) for a in spokes]
+        strokes.append(stroke(arc, 1.0, "muted", 1.0))
+        strokes.append(stroke(np.array([-np.pi / 2, np.pi / 2]), 1.0, "ink", 1.2))
         for a in spokes[::2]:
-            text(
-                f"{abs(round(np.degrees(a)))}°",
-                place(np.array([a]), np.array([1 + 17 * scale / extent]))[0],
-                colors["muted"],
-            )
-
-        # the viewer, and where a mirror would send its ray
-        theta_o = np.radians(state.directions.theta_o)
-        draw_lines(
-            gpu, target, arrow(center, place(np.array([theta_o]), np.ones(1))[0], scale), colors["accent"], 1.6 * scale
-        )
-        dashes = np.linspace(0, 1, 41).reshape(-1)
-        mirror = [place(np.full(2, -theta_o), dashes[i : i + 2]) for i in range(0, 40, 2)]
-        draw_lines(gpu, target, mirror, colors["accent"], scale)
-
-        for _, key, theta, f32, _ in slices:
-            color = colors["curves"][key % len(colors["curves"])] if isinstance(key, int) else colors[key]
-            draw_lines(gpu, target, [place(theta, reach(f32))], color, 3.2 * scale)
-        if self.reference == "on":
-            for _, _, theta, _, f64 in slices:
-                draw_lines(gpu, target, [place(theta, reach(f64))], colors["reference"], 1.0 * scale)
-
+            text(f"{abs(round(np.degrees(a)))}°", place(a, 1 + 17 * scale / extent), "muted")
         for value, r in zip(rings, reach(rings), strict=True):
-            at = place(np.array([np.pi / 2]), np.array([r]))[0]
-            text(number(value), at - [0, 12 * scale], colors["muted"], points=11.0)
-        at = place(np.array([theta_o]), np.array([1 + 34 * scale / extent]))[0]
-        text("ωo", at, colors["accent"], points=13.0)
-        lines = [(QUANTITIES[self.quantity], colors["ink"])]
-        for name, key, *_ in slices:
-            lines.append((name, colors["curves"][key % len(colors["curves"])] if isinstance(key, int) else colors[key]))
+            text(number(value), place(np.pi / 2, r) - [0, 12 * scale], "muted", points=11.0)
+
+        # the viewer, and dashed where a mirror would send its ray
+        strokes += [Stroke(p, colors["accent"], 1.6 * scale) for p in arrow(center, place(theta_o, 1.0), scale)]
+        strokes += [stroke(-theta_o, np.array([i, i + 1]) / 40, "accent", 1.0) for i in range(0, 40, 2)]
+        text("ωo", place(theta_o, 1 + 34 * scale / extent), "accent", points=13.0)
+
+        legend = [(QUANTITIES[self.quantity], "ink")]
+        for name, key, theta, f32, _ in slices:
+            color = key if self.curves == "rgb" else colors["curves"][key % len(colors["curves"])]
+            strokes.append(stroke(theta, reach(f32), color, 3.2))
+            legend.append((name, color))
+        draw_lines(gpu, target, strokes)
         if self.reference == "on":
-            lines.append(("thin: float64", colors["muted"]))
-        for i, (words, color) in enumerate(lines):
+            draw_lines(gpu, target, [stroke(theta, reach(f64), "reference", 1.0) for _, _, theta, _, f64 in slices])
+            legend.append(("thin: float64", "muted"))
+        for i, (words, color) in enumerate(legend):
             text(words, (12 * scale, height - (16 + 18 * i) * scale), color, (0.0, 0.5), 12.5)
         note = f"peak {number(peak, 4)} / sr at θo = {state.directions.theta_o:g}°"
         yield Picture(target, labels=labels, note=note)

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..environment import environment
-from ..glsl import of_model
+from ..glsl import assemble, of_model
 from ..model import param
-from .picture import Picture, View
+from .picture import R2, Picture, View
 
+DISC = 3 * 32  # vertices of disc.vert's triangles
 SMOOTH = 16  # jittered passes after which edges and highlights of a directional light are smooth
-R2 = np.array([0.7548776662466927, 0.5698402909980532])  # Roberts 2018: its multiples fill the square evenly
 
 
 @dataclass(frozen=True)
@@ -41,15 +41,17 @@ class Sphere(View):
             uniforms |= {"turn": turn(light), "gain": light.gain}
             textures = environment_textures(gpu, light)
         lighting = "both" if len(lights) == 2 else lights[0] if lights else "dark"
-        program = gpu.program(of_model("views/sphere.frag", state.model, slots={"lighting": lighting}))
-        uniforms |= {"center": (size[0] / 2, size[1] / 2), "radius": self.radius(size)}
-        target = gpu.target("sphere", size)
+        fragment = of_model("views/sphere.frag", state.model, slots={"lighting": lighting})
+        program = gpu.program(fragment, assemble("views/disc.vert"))
+        width, height = map(float, size)
+        uniforms |= {"size": (width, height), "center": (width / 2, height / 2), "radius": self.radius(size)}
+        target = gpu.target("sphere", size)  # new ones are clear, and what lies outside of the disc stays so
         most = self.samples if textures else SMOOTH
         noise, half = None, None
         for n in range(1, most + 1):
             jitter = (R2 * (n - 1) + 0.5) % 1.0 - 0.5
             uniforms |= {"jitter": tuple(jitter), "share": 1 / n, "pass": n - 1}
-            gpu.draw(program, target, uniforms, textures, blend="mean" if n > 1 else None)
+            gpu.draw(program, target, uniforms, textures, vertices=DISC, blend="mean" if n > 1 else None)
             if textures and n >= 16 and n & (n - 1) == 0:
                 mean = gpu.pixels(target)
                 noise = standard_error(mean, half) if half is not None else None

@@ -8,8 +8,8 @@ import numpy as np
 from ..glsl import of_model
 from ..measure.grid import Grid, direction, grid, plane_of_incidence
 
-RAYS = 128
-NODES = 65
+RAYS = 96
+NODES = 49
 EDGE = 1 - 1e-5  # the last node, just above the horizon: on it f is 0 and its limit could not be drawn
 
 

@@ -1,16 +1,20 @@
-// One quad around each segment of a polyline. A texel of `points` is x, y in pixels from the bottom left, and 0 where a new
-// polyline begins.
+// One quad around each segment of a polyline. Row 0 of `points`: x and y in pixels from the bottom left, the line's rank or
+// 0 where a new one begins, its width in pixels. Row 1: its colour and opacity.
 uniform sampler2D points;
-uniform vec2 size;    // of the target, pixels
-uniform float width;  // of the line, pixels
-flat out vec2 from;
-flat out vec2 to;
+uniform vec2 size;      // of the target, pixels
+uniform float strokes;  // above the highest rank
+flat out vec4 segment;  // from, to
+flat out vec4 ink;
+flat out float width;
+flat out float rank;  // in (0, 1)
 
 void main() {
-  vec3 a = texelFetch(points, ivec2(gl_InstanceID, 0), 0).xyz;
-  vec3 b = texelFetch(points, ivec2(gl_InstanceID + 1, 0), 0).xyz;
-  from = a.xy;
-  to = b.xy;
+  vec4 a = texelFetch(points, ivec2(gl_InstanceID, 0), 0);
+  vec4 b = texelFetch(points, ivec2(gl_InstanceID + 1, 0), 0);
+  segment = vec4(a.xy, b.xy);
+  ink = texelFetch(points, ivec2(gl_InstanceID + 1, 1), 0);
+  width = b.w;
+  rank = b.z / strokes;
   vec2 along = b.xy - a.xy;
   float reach = length(along);
   along = reach > 0.0 ? along / reach : vec2(1.0, 0.0);

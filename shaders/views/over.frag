@@ -1,7 +1,8 @@
-// A picture, premultiplied by its coverage, over what is there.
+// A share of a picture that is premultiplied by its coverage, to be blended with what is there.
 uniform sampler2D picture;
+uniform float share;
 out vec4 color;
 
 void main() {
-  color = texelFetch(picture, ivec2(gl_FragCoord.xy), 0);
+  color = share * texelFetch(picture, ivec2(gl_FragCoord.xy), 0);
 }

@@ -1,0 +1,130 @@
+"""What pictures cost, as ratios within one run on one context; the figures the project holds itself to."""
+
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from .glsl import assemble, of_model
+from .gpu import offscreen
+from .state import State
+
+SIZE = (1024, 1024)
+WINDOW = (676, 210)  # the size at which the best known peer's lobe was timed
+BARE = "import numpy, imgui_bundle, moderngl; moderngl.create_context(standalone=True, require=330{backend})"
+PICTURE = """
+from brdf_explorer.gpu import offscreen
+from brdf_explorer.state import load
+from brdf_explorer.views.develop import develop
+with offscreen() as gpu:
+    state = load("gold")
+    gpu.pixels(develop(gpu, next(state.views["sphere"].pictures(gpu, state, (512, 512))), state.look))
+"""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A measured ratio or time: median and quartiles, and the limit the project sets itself, if any."""
+
+    name: str
+    median: float
+    low: float
+    high: float
+    unit: str = ""
+    limit: float | None = None
+
+    @property
+    def ok(self):
+        return self.limit is None or self.median <= self.limit
+
+
+def interleaved(runs, repeats):
+    """Seconds (repeats,) of each named run, taken in turns so that drift of the machine meets all alike."""
+    for run in runs.values():
+        run()
+        run()
+    times = {name: [] for name in runs}
+    for _ in range(repeats):
+        for name, run in runs.items():
+            start = time.perf_counter()
+            run()
+            times[name].append(time.perf_counter() - start)
+    return {name: np.array(t) for name, t in times.items()}
+
+
+def figure(name, samples, unit="", limit=None):
+    low, median, high = np.quantile(samples, [0.25, 0.5, 0.75])
+    return Figure(name, float(median), float(low), float(high), unit, limit)
+
+
+def report(repeats=31, processes=5):
+    """Figures, as they are measured: of drawing, then of starting."""
+    with offscreen() as gpu:
+        yield from drawing(gpu, repeats)
+    yield from starting(processes)
+
+
+def drawing(gpu, repeats):
+    """Costs of the views against bare fills and evaluations, one draw a finish."""
+    state = State()
+    target = gpu.target("bench", SIZE)
+    fill = gpu.program(assemble("views/fill.frag"))
+    evaluate = gpu.program(of_model("views/evaluate.frag", state.model))
+    sphere, lobe, polar = (state.views[name] for name in ("sphere", "lobe", "polar"))
+
+    def finished(draw):
+        def run():
+            draw()
+            gpu.ctx.finish()
+
+        return run
+
+    def first(view, size):
+        return finished(lambda: next(view.pictures(gpu, state, size)))
+
+    uniforms = {"material": state.model, "size": tuple(map(float, SIZE))}
+    times = interleaved(
+        {
+            "fill": finished(lambda: gpu.draw(fill, target)),
+            "evaluate": finished(lambda: gpu.draw(evaluate, target, uniforms)),
+            "sphere": first(sphere, SIZE),
+            "lobe": first(lobe, WINDOW),
+            "polar": first(polar, WINDOW),
+        },
+        repeats,
+    )
+    share = np.pi * sphere.radius(SIZE) ** 2 / (SIZE[0] * SIZE[1])
+    bare = np.maximum(times["evaluate"] - times["fill"], 0.0)
+    yield figure("fill of 1024x1024 RGBA32F", times["fill"] * 1e3, "ms")
+    yield figure("one evaluation of f, fill subtracted", bare / (SIZE[0] * SIZE[1]) * 1e9, "ns")
+    yield figure("sphere 1024x1024", times["sphere"] * 1e3, "ms")
+    yield figure(
+        "sphere / (covered pixels x evaluation + fill)", times["sphere"] / (share * bare + times["fill"]), limit=1.5
+    )
+    yield figure("lobe 676x210", times["lobe"] * 1e3, "ms")
+    yield figure("lobe 676x210 / fill", times["lobe"] / times["fill"], limit=4)
+    yield figure("polar slice 676x210", times["polar"] * 1e3, "ms")
+
+
+def starting(processes):
+    """Costs of imports and of the first picture, each in a new process."""
+
+    def run(code):
+        return lambda: subprocess.run([sys.executable, "-c", code], check=True)
+
+    backend = ', backend="egl"' if sys.platform.startswith("linux") else ""
+    times = interleaved(
+        {
+            "numpy": run("import numpy"),
+            "package": run("import numpy, brdf_explorer.state"),
+            "bare": run(BARE.format(backend=backend)),
+            "picture": run(PICTURE),
+        },
+        processes,
+    )
+    yield figure("import of the package over numpy", times["package"] - times["numpy"], "s", limit=0.1)
+    yield figure("imports of numpy, moderngl, imgui_bundle and a context", times["bare"], "s")
+    yield figure("first picture from a cold process", times["picture"], "s")
+    yield figure("first picture / those imports and a context", times["picture"] / times["bare"], limit=2)
