@@ -43,4 +43,4 @@ def number(value, digits=3):
     if value != 0 and not 1e-2 <= abs(value) < 1e4:
         mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
         return f"{float(mantissa):g}e{int(exponent)}"
-    return f"{value:.{digits}g}"
+    return f"{float(f'{value:.{digits}g}'):g}"

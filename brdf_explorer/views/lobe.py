@@ -56,22 +56,23 @@ class Lobe(View):
 
         def pointers(opacity):
             strokes = []
-            for _, w, color in arrows:
-                line, head = arrow(*camera.pixels([0 * w, 1.12 * w]), scale)
-                strokes += [Stroke(points, colors[color], 1.6 * scale, opacity) for points in (line, head)]
+            for w, color in ((np.array([0, 0, 1.0]), "ink"), (values.wo, "accent")):
+                tips = arrow(*camera.pixels([0 * w, 1.12 * w]), scale)
+                strokes += [Stroke(points, colors[color], 1.6 * scale, opacity) for points in tips]
             return strokes
 
-        arrows = [
-            ("ωr", values.wo * [-1, -1, 1], "muted"),
-            ("n", np.array([0, 0, 1.0]), "ink"),
-            ("ωo", values.wo, "accent"),
-        ]
-        for name, w, color in arrows:
-            text(name, camera.pixels([1.2 * w])[0], color)
+        mirror = values.wo * [-1, -1, 1]
+        dashes = [stroke([mirror * i / 28, mirror * (i + 1) / 28], "accent", 1.0) for i in range(0, 32, 2)]
+        for name, at, color in (
+            ("n", [0, 0, 1.2], "ink"),
+            ("ωo", 1.2 * values.wo, "accent"),
+            ("ωr", 1.2 * mirror, "accent"),
+        ):
+            text(name, camera.pixels([at])[0], color)
         _, wi, f = values.plane()
         profile = luminance(f) * (wi[:, 2] if self.quantity == "f_cos" else 1.0) * share
-        outline = stroke(wi * radius(profile, self.radius, self.decades)[:, None], "ink", 1.0, 0.35)
-        below, above = [*disc, *pointers(1.0)], [outline, *pointers(0.25)]  # seen through the lobe
+        outline = stroke(wi * radius(profile, self.radius, self.decades)[:, None], "ink", 1.0, 0.45)
+        below, above = [*disc, *dashes, *pointers(1.0)], [outline, *pointers(0.25)]  # seen through the lobe
         note = "albedo " + "  ".join(f"{a:.3f}" for a in values.albedo)
         over = gpu.program(assemble("views/over.frag"))
         for layer, done in self.surfaces(gpu, size, values, camera, share):
@@ -113,7 +114,7 @@ class Lobe(View):
         gpu.draw(gpu.program(assemble("views/colorbar.frag")), target, {"box": box}, blend="over", box=box)
         title = Label(QUANTITIES[self.quantity], size[0] - 10 * scale, 24 * scale, colors["ink"], (1.0, 0.5), 12.5)
         if self.radius == "linear":
-            ticks = np.arange(0, peak * 0.94, nice_step(peak / 5)) if peak > 0 else []
+            ticks = np.arange(0, peak * 0.9, nice_step(peak / 5)) if peak > 0 else []
         else:
             ticks = powers_below(peak * 0.6, self.decades)
         labels = [title]
