@@ -15,10 +15,10 @@ fit      per channel, the eta and k that have exactly the reference's F0 and, of
 lines    n and k at 645, 526 and 444 nm.
 average  n and k weighted as the reflectance is, then clipped to the ranges of the model.
 
-Errors are CIE Delta E 2000 against the reference at 0 and 80 degrees of incidence, and the largest at 0, 1, ... 89. The
-presets hold `fit`, rounded to 4 significant digits before its error is measured. Of every metal it has the least largest
-error: at most 0.21, but for gold's 1.3 from the red that sRGB lacks; `average` reaches 2.2, `lines` 4.3. Measurements of
-one metal differ by more: the database's others of bulk gold from this one by 1.5 to 4.3 at 0 degrees.
+Errors are CIE Delta E 2000 against the reference at 0 and 80 degrees of incidence, and the largest at 0, 1, ... 89.
+The presets hold `fit`, rounded to 4 significant digits before its error is measured. Of every metal it has the least
+largest error: at most 0.21, but for gold's 1.3 from the red that sRGB lacks; `average` reaches 2.2, `lines` 4.3.
+Measurements of one metal differ by more: the database's others of bulk gold from this one by 1.5 to 4.3 at 0 degrees.
 """
 
 import colour
