@@ -9,12 +9,17 @@ import numpy as np
 from .common import quotient
 
 
+def eta2_cos2_t(c, eta):
+    """(eta cos theta_t)^2, negative at total internal reflection."""
+    return np.where(eta < 0.7, eta * eta - (1 - c) * (1 + c), (eta - 1) * (eta + 1) + c * c)
+
+
 def F_dielectric(c, eta):
     """Reflectance of a dielectric; 1 at total internal reflection."""
     c, eta = np.broadcast_arrays(np.asarray(c, dtype=float), eta)
     excess = (eta - 1) * (eta + 1)
     s2 = (1 - c) * (1 + c)
-    square = np.where(eta < 1, eta * eta - s2, excess + c * c)
+    square = eta2_cos2_t(c, eta)
     total = square <= 0
     t = np.sqrt(np.where(total, 1.0, square))
     rs = excess / ((c + t) * (c + t))
@@ -27,7 +32,7 @@ def F_conductor(c, eta, k):
     c, eta, k = np.broadcast_arrays(np.asarray(c, dtype=float), eta, k)
     excess = (eta - 1) * (eta + 1)
     s2 = (1 - c) * (1 + c)
-    square = excess + c * c - k * k
+    square = eta2_cos2_t(c, eta) - k * k
     root = np.sqrt(0.5 * (np.hypot(square, 2 * eta * k) + np.abs(square)))
     other = quotient(eta * k, root)
     a = np.where(square > 0, root, other)
