@@ -12,8 +12,8 @@ float h_beckmann(float a) {
 
 // w.z Lambda(w), w.z > 0: finite at grazing angles.
 float z_Lambda_beckmann(vec3 w, vec2 alpha) {
-  float s = length(alpha * w.xy);
-  if (w.z > 9.3 * s) return 0.0;  // exp(-a^2) leaves float32's range
-  float a = w.z / s;
-  return s * exp_precise(-a * a) * h_beckmann(a);
+  float s2 = dot(alpha * w.xy, alpha * w.xy);
+  if (w.z * w.z > 86.5 * s2) return 0.0;  // exp(-a^2) leaves float32's range
+  float a2 = w.z * w.z / s2;  // not the square of a: the exponential multiplies its roundings by a^2
+  return sqrt(s2) * exp_precise(-a2) * h_beckmann(sqrt(a2));
 }
