@@ -1,5 +1,6 @@
 // Slot ndf: Trowbridge-Reitz (GGX), an ellipsoid's normals. Trowbridge and Reitz 1975; Walter et al. 2007, Eq. 33.
 // Anisotropic by stretching: normals are remapped by 1/alpha, directions by alpha (Heitz 2014, section 5.3).
+#include "lib/common.glsl"
 
 // Density of microfacet area over normals, 1/sr; D cos integrates to 1. Sums of squares only: nothing cancels at small alpha.
 // wm may have any length: a half vector's normalisation would only add rounding.
