@@ -40,13 +40,9 @@ class Lobe(View):
         target = gpu.target("lobe", size, 4, "f1")
         target.clear(*rgb(colors["paper"]), 1.0)
         camera = Camera(self, size, scale)
-        labels = []
 
         def stroke(points, color, width, opacity=1.0):
             return Stroke(camera.pixels(points), colors[color], width * scale, opacity)
-
-        def text(words, at, color, anchor=(0.5, 0.5), points=13.0):
-            labels.append(Label(words, float(at[0]), size[1] - float(at[1]), colors[color], anchor, points))
 
         turn = np.radians(np.arange(0, 361, 3))
         ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(turn.size)], axis=-1)
@@ -63,12 +59,15 @@ class Lobe(View):
 
         mirror = values.wo * [-1, -1, 1]
         dashes = [stroke([mirror * i / 28, mirror * (i + 1) / 28], "accent", 1.0) for i in range(0, 32, 2)]
+        labels = []
         for name, at, color in (
-            ("n", [0, 0, 1.2], "ink"),
-            ("ωo", 1.2 * values.wo, "accent"),
-            ("ωr", 1.2 * mirror, "accent"),
+            ("ωo", values.wo, "accent"),
+            ("n", np.array([0, 0, 1.0]), "ink"),
+            ("ωr", mirror, "accent"),
         ):
-            text(name, camera.pixels([at])[0], color)
+            x, y = camera.pixels([1.2 * at])[0]
+            if all(np.hypot(x - b.x, size[1] - y - b.y) > 20 * scale for b in labels):  # at theta_o = 0 one is enough
+                labels.append(Label(name, float(x), float(size[1] - y), colors[color], size=13.0))
         _, wi, f = values.plane()
         profile = luminance(f) * (wi[:, 2] if self.quantity == "f_cos" else 1.0) * share
         outline = stroke(wi * radius(profile, self.radius, self.decades)[:, None], "ink", 1.0, 0.45)

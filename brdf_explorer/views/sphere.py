@@ -6,7 +6,7 @@ import numpy as np
 
 from ..environment import environment
 from ..glsl import assemble, of_model
-from ..model import param
+from ..model import choice, param
 from .picture import R2, Picture, View
 
 DISC = 3 * 32  # vertices of disc.vert's triangles
@@ -19,6 +19,7 @@ class Sphere(View):
 
     title = "Sphere"
 
+    background: str = choice("plain", ("plain", "environment"), "what lies behind the sphere")
     noise: float = param(0.01, 0.001, 0.1, "standard error of a pixel, over the mean, that ends sampling", scale="log")
     samples: int = param(1024, 16, 65536, "most samples a pixel", scale="log")
 
@@ -58,9 +59,20 @@ class Sphere(View):
                 half = mean
             done = n == most or noise is not None and noise <= self.noise
             note = f"{n} sample{'s' * (n > 1)} a pixel" + (f", noise {100 * noise:.2g} %" if noise is not None else "")
-            yield Picture(target, linear=True, note=note, done=done)
+            shown = self.over_background(gpu, target, uniforms, textures)
+            yield Picture(shown, linear=True, note=note, done=done)
             if done:
                 return
+
+    def over_background(self, gpu, target, uniforms, textures):
+        """The target, or if asked and lit by an environment one with that behind it."""
+        if self.background == "plain" or not textures:
+            return target
+        shown = gpu.target("sphere.shown", target.size)
+        gpu.draw(gpu.program(assemble("views/background.frag")), shown, uniforms, textures)
+        over = gpu.program(assemble("views/over.frag"))
+        gpu.draw(over, shown, {"share": 1.0}, {"picture": target.color_attachments[0]}, blend="premultiplied")
+        return shown
 
 
 def standard_error(mean, half):

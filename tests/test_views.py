@@ -1,0 +1,164 @@
+"""What the views draw: the table finds the peak, pictures show what the model says, labels have room."""
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+from PIL import ImageFont
+
+from brdf_explorer.lib.srgb import srgb_decode, srgb_encode
+from brdf_explorer.measure import albedo
+from brdf_explorer.measure.grid import direction
+from brdf_explorer.models import MODELS
+from brdf_explorer.state import Directions, Light, Look, Material, State
+from brdf_explorer.views import VIEWS
+from brdf_explorer.views.develop import develop
+from brdf_explorer.views.picture import PALETTES, Picture, rgb
+from brdf_explorer.views.sphere import toward
+from brdf_explorer.views.table import table
+
+MICROFACET, DIFFUSE = MODELS["microfacet"], MODELS["diffuse"]
+
+
+def last(pictures):
+    for picture in pictures:
+        pass
+    return picture
+
+
+def true_peak(model, wo):
+    """Largest value of f over wi above a cosine of 1e-5: the best of many directions, refined by steps that shrink."""
+    rng = np.random.default_rng(1)
+    turn = rng.uniform(0, 2 * np.pi, 20000)
+    starts = [
+        model.sample_f(wo, rng.random((20000, 2)))[0],
+        direction(np.arccos(10 ** rng.uniform(-5, 0, 20000)), turn),
+        (wo * [-1, -1, 1])[None],
+    ]
+    tries, step, value = np.concatenate(starts), 0.1, 0.0
+    while step > 1e-9:
+        tries[:, 2] = np.maximum(tries[:, 2], 1e-5)
+        tries /= np.linalg.norm(tries, axis=-1, keepdims=True)
+        values = model.f(wo, tries)[..., 0]
+        if values.max() > value:
+            best, value = tries[values.argmax()], float(values.max())
+        else:
+            step *= 0.7
+        tries = best + step * rng.normal(size=(400, 3))
+    return value
+
+
+@pytest.mark.parametrize("ndf", ["ggx", "beckmann"])
+@pytest.mark.parametrize("alpha", [(1e-4, 1e-4), (1e-3, 1e-3), (0.1, 0.1), (0.5, 0.5), (1e-3, 0.5), (0.7, 0.05)])
+@pytest.mark.parametrize("theta_o", [0.0, 40.0, 75.0])
+def test_table_finds_the_peak(gpu, ndf, alpha, theta_o):
+    model = MICROFACET(alpha=alpha, ndf=ndf, fresnel="one")
+    t = table(gpu, model, Directions(theta_o=theta_o, phi_o=25.0))
+    # f may rise to the horizon, where the table ends at 1 - 1e-5 of the ray and the search at a cosine of 1e-5
+    assert t.f[..., 0].max() == pytest.approx(true_peak(model, t.wo), rel=0.01)
+
+
+@pytest.mark.parametrize("model", [MICROFACET(alpha=0.3), MICROFACET(alpha=1e-3), DIFFUSE(diffuse="oren_nayar")])
+def test_table_gives_the_albedo(gpu, model):
+    t = table(gpu, model, Directions(theta_o=50.0))
+    np.testing.assert_allclose(t.albedo, albedo(model, t.wo), atol=2e-3)
+
+
+def test_plane_runs_from_horizon_to_horizon_through_the_mirror_direction(gpu):
+    theta, wi, f = table(gpu, MICROFACET(alpha=(0.02, 0.3)), Directions(theta_o=40.0, phi_o=110.0)).plane()
+    assert np.all(np.diff(theta) > 0)
+    assert np.degrees(theta[[0, -1]]) == pytest.approx([-90, 90], abs=0.1)
+    across = wi @ [-np.sin(np.radians(110)), np.cos(np.radians(110)), 0]
+    np.testing.assert_allclose(across, 0, atol=1e-12)
+    assert np.degrees(theta[f[:, 0].argmax()]) == pytest.approx(-40, abs=0.5)
+
+
+def test_slice_of_float32_and_float64_agree(gpu):
+    state = State(materials=(Material("a", MICROFACET(alpha=1e-3)), Material("b", DIFFUSE())))
+    for _, _, _, f32, f64 in state.views["polar"].slices(gpu, state):
+        np.testing.assert_allclose(f32, f64, rtol=1e-4, atol=1e-6 * f64.max())
+
+
+def test_sphere_under_a_directional_light_is_f_cos_irradiance(gpu):
+    state = State(light=Light(theta=40.0, phi=60.0, irradiance=2.0))
+    view = state.views["sphere"]
+    size = (256, 256)
+    picture = next(view.pictures(gpu, state, size))
+    pixels = gpu.pixels(picture.target)[::-1]
+    y, x = np.mgrid[:256, :256]
+    p = (np.stack([x, y], axis=-1) + 0.5 - 128) / view.radius(size)
+    inside = np.linalg.norm(p, axis=-1) < 0.98
+    n = np.concatenate([p, np.sqrt(np.maximum(1 - (p**2).sum(-1, keepdims=True), 0))], axis=-1)[inside]
+    t = np.stack([n[:, 2], 0 * n[:, 2], -n[:, 0]], axis=-1)
+    t /= np.linalg.norm(t, axis=-1, keepdims=True)
+    frame = np.stack([t, np.cross(n, t), n], axis=-2)
+    wo, wi = frame @ [0, 0, 1], frame @ toward(state.light)
+    expected = state.model.f(wo, wi) * np.maximum(wi[:, 2:], 0) * 2.0
+    np.testing.assert_allclose(pixels[inside][:, :3], expected, rtol=2e-4, atol=1e-5)
+
+
+@pytest.mark.parametrize("model", [MICROFACET(alpha=0.4, fresnel="one", ndf="beckmann"), DIFFUSE(diffuse="oren_nayar")])
+def test_sphere_in_a_furnace_is_the_albedo(gpu, model):
+    """Environment, its sampling, the BSDF's and their weights together estimate the integral that quadrature gives."""
+    state = State(light=Light(irradiance=0.0, environment="furnace")).with_model(model)
+    state = state.with_view("sphere", noise=0.001, samples=1024)
+    view, size = state.views["sphere"], (64, 64)
+    pixels = gpu.pixels(last(view.pictures(gpu, state, size)).target)
+    for row in (32, 20, 8):
+        cos = np.sqrt(1 - ((31.5 - row) ** 2 + 0.25) / view.radius(size) ** 2)
+        expected = albedo(model, direction(np.arccos(cos), 0.0))
+        block = pixels[row, 31:33, :3]
+        # a pixel's standard error after 1024 samples is below 0.01; its two neighbours average
+        np.testing.assert_allclose(block.mean(axis=0), expected, atol=0.02)
+
+
+def test_sphere_stops_when_its_noise_is_low_enough(gpu):
+    state = State(light=Light(irradiance=0.0, environment="furnace")).with_view("sphere", noise=0.05)
+    pictures = list(state.views["sphere"].pictures(gpu, state, (64, 64)))
+    assert pictures[-1].done and not pictures[0].done
+    assert 32 <= len(pictures) < 1024
+    assert "noise" in pictures[-1].note
+
+
+def test_develop_is_exact_srgb_over_the_backdrop_and_shows_nan(gpu):
+    values = np.linspace(0, 1.2, 256, dtype=np.float32)
+    image = np.zeros((2, 256, 4), np.float32)
+    image[0, :, :3], image[0, :, 3] = values[:, None], 1.0
+    image[1, :4] = [[np.nan, 0, 0, 1], [np.inf, 0, 0, 1], [0, 0, 0, 0], [0.5, 0.5, 0.5, 0.5]]
+    target = gpu.ctx.framebuffer([gpu.texture(image)])
+    out = gpu.pixels(develop(gpu, Picture(target, linear=True), Look()))[::-1]
+    expected = np.round(255 * srgb_encode(np.minimum(values.astype(float), 1.0)))
+    np.testing.assert_allclose(out[0, :, 0], expected, atol=1)
+    assert np.mean(out[0, :, 0] == expected) > 0.98  # the others lie within float32 of a rounding edge
+    assert out[1, 0, :3].tolist() == out[1, 1, :3].tolist() == [255, 0, 255]
+    backdrop = np.array(rgb(PALETTES["light"]["backdrop"]))
+    np.testing.assert_allclose(out[1, 2, :3], 255 * backdrop, atol=0.6)
+    half = srgb_encode(0.5 * srgb_decode(backdrop) + 0.5)  # 0.5 covered by radiance 0.5 / 0.5 = 1
+    np.testing.assert_allclose(out[1, 3, :3], 255 * half, atol=1.1)
+
+
+@pytest.mark.parametrize("name", VIEWS)
+@pytest.mark.parametrize("size, scale", [((676, 210), 1.0), ((400, 300), 1.0), ((1000, 900), 2.0)])
+@pytest.mark.parametrize("theta_o", [0.0, 40.0, 85.0])
+def test_labels_have_room(gpu, name, size, scale, theta_o):
+    state = State(directions=Directions(theta_o=theta_o))
+    boxes = []
+    for label in last(state.views[name].pictures(gpu, state, size, scale)).labels:
+        left, top, right, bottom = ImageFont.load_default(label.size * scale).getbbox(label.text)
+        x, y = label.x - label.anchor[0] * (right - left), label.y - label.anchor[1] * (bottom - top)
+        boxes.append((x, y, x + right - left, y + bottom - top, label.text))
+    for box in boxes:
+        assert box[0] >= 0 and box[1] >= 0 and box[2] <= size[0] and box[3] <= size[1], box
+    for a, b in combinations(boxes, 2):
+        assert a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1], (a, b)
+
+
+def test_a_picture_depends_on_what_its_view_says_it_shows():
+    state = State()
+    for view in state.views.values():
+        assert view.shows(state) == view.shows(State())
+    darker = replace(state, look=replace(state.look, exposure=-1.0))
+    assert state.views["sphere"].shows(state) == state.views["sphere"].shows(darker)
+    moved = replace(state, directions=Directions(theta_o=10.0))
+    assert state.views["lobe"].shows(state) != state.views["lobe"].shows(moved)
