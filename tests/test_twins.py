@@ -1,0 +1,502 @@
+"""Each formula's twins agree: the GLSL in float32 and the numpy in float64, function by function.
+
+Signatures are read from the shaders; an argument's name says from where it is drawn, over decades. The float64 twin gets the
+arguments that float32 holds. A new chunk or model is covered as soon as its files are there.
+"""
+
+import importlib
+import inspect
+import re
+from dataclasses import dataclass
+from itertools import combinations, product
+
+import numpy as np
+import pytest
+
+from brdf_explorer.glsl import SHADERS, assemble
+from brdf_explorer.gpu import Signature
+from brdf_explorer.lib.common import PI, TWO_PI, length, normalize, quotient, vec
+from brdf_explorer.model import Choice, Param, declared
+from brdf_explorer.models import MODELS
+
+COMMON, COMMON_SHARE = 1e-5, 0.999
+"""The relative error that this share of the values must not exceed."""
+WORST = 1e-3
+"""The relative error that no value may exceed."""
+
+CHUNKS = sorted(p.stem for p in (SHADERS / "lib").glob("*.glsl"))
+
+ONLY_NUMPY = {
+    "common": {"dot", "length", "normalize", "mix", "quotient", "vec", "split", "above_horizon"},  # words that GLSL has
+    "srgb": {"srgb_decode"},  # colours of the interface become linear once, on their way in
+}
+ONLY_GLSL = {
+    "ndf_beckmann": {"leading"},  # of float32's rounding
+}
+COLORS = {"f", "F", "tonemap", "srgb_encode"}
+"""Functions whose components are compared each; other vectors are compared relative to their length."""
+
+
+# --- signatures ------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Function:
+    """A GLSL function: where it is, its signature, and the names of what goes in."""
+
+    file: str
+    signature: str
+
+    @property
+    def name(self):
+        return Signature(self.signature).name
+
+    @property
+    def arguments(self):
+        """[(type, name)] of what goes in."""
+        inside = self.signature.partition("(")[2].rstrip(")")
+        return [tuple(p.split()[-2:]) for p in inside.split(",") if p.split()[0] != "out"]
+
+    @property
+    def over_maps(self):
+        """A function of textures, which test_environment compares over maps."""
+        return any(kind == "sampler2D" for kind, _ in self.arguments)
+
+
+def functions(file):
+    """The functions that a shader file defines itself."""
+    text = (SHADERS / file).read_text(encoding="utf-8")
+    return [Function(file, s) for s in re.findall(r"^(?!return\b|else\b)(\w+ \w+\([^();]*\))\s*{", text, re.M)]
+
+
+def own(module):
+    """The public functions that a module defines itself, by name."""
+    found = inspect.getmembers(module, inspect.isfunction)
+    return {name: f for name, f in found if f.__module__ == module.__name__ and not name.startswith("_")}
+
+
+def twin(chunk):
+    return importlib.import_module(f"brdf_explorer.lib.{chunk}")
+
+
+def chunk_of(function):
+    return function.file.split("/")[1].removesuffix(".glsl")
+
+
+LIB = [function for chunk in CHUNKS for function in functions(f"lib/{chunk}.glsl")]
+
+
+def label(function):
+    return f"{chunk_of(function)}.{function.name}"
+
+
+# --- arguments -------------------------------------------------------------------------------------------------------
+# A draw is called with a generator, a count, the components of the type, and the arguments drawn before.
+
+
+def decades(low, high):
+    return lambda rng, n, size, drawn: np.exp(rng.uniform(np.log(low), np.log(high), (n, size)))
+
+
+def uniform(low, high):
+    return lambda rng, n, size, drawn: rng.uniform(low, high, (n, size))
+
+
+def integers(high):
+    return lambda rng, n, size, drawn: rng.integers(0, high, (n, size))
+
+
+def either(*draws):
+    def draw(rng, n, size, drawn):
+        which = rng.integers(0, len(draws), n)
+        return np.choose(which[:, None], [d(rng, n, size, drawn) for d in draws])
+
+    return draw
+
+
+def signed(draw):
+    return lambda rng, n, size, drawn: draw(rng, n, size, drawn) * rng.choice((-1, 1), (n, size))
+
+
+def one_plus(draw):
+    return lambda rng, n, size, drawn: 1 + draw(rng, n, size, drawn)
+
+
+ZERO = uniform(0, 0)
+COSINE = either(decades(1e-4, 1), uniform(1e-4, 1))
+
+
+def hemisphere(rng, n, size, drawn):
+    z = COSINE(rng, n, 1, drawn)[:, 0]
+    phi = rng.uniform(0, TWO_PI, n)
+    r = np.sqrt((1 - z) * (1 + z))
+    return vec(r * np.cos(phi), r * np.sin(phi), z)
+
+
+def normals(rng, n, size, drawn):
+    """Half of them with slopes on the scale of alpha, where there is one, as the lobe's normals have."""
+    w = hemisphere(rng, n, size, drawn)
+    if "alpha" in drawn:
+        near = rng.random(n) < 0.5
+        phi = rng.uniform(0, TWO_PI, n)
+        slope = (
+            drawn["alpha"] * either(decades(1e-3, 10), uniform(0, 10))(rng, n, 1, drawn) * vec(np.cos(phi), np.sin(phi))
+        )
+        w[near] = normalize(np.concatenate([slope, np.ones((n, 1))], axis=-1))[near]
+    return w
+
+
+def sphere(rng, n, size, drawn):
+    return rng.permuted(hemisphere(rng, n, size, drawn), axis=-1) * rng.choice((-1, 1), (n, 1))
+
+
+def sine_of(cosine):
+    return lambda rng, n, size, drawn: np.sqrt((1 - drawn[cosine]) * (1 + drawn[cosine]))
+
+
+DRAWS = {
+    "wo": hemisphere,
+    "wi": hemisphere,
+    "w": hemisphere,
+    "wm": normals,
+    "m": hemisphere,
+    "u": lambda rng, n, size, drawn: rng.integers(0, 2**24, (n, size)) * 2.0**-24,
+    "alpha": decades(1e-4, 1),
+    "eta": either(decades(0.05, 6), uniform(0.05, 6), one_plus(signed(decades(1e-4, 0.9)))),
+    "k": either(ZERO, uniform(0, 15), decades(1e-4, 15)),
+    "c": COSINE,
+    "F0": either(decades(1e-6, 1), uniform(0, 1)),
+    "sigma": either(decades(1e-4, 1), uniform(0, 1)),
+    "Lambda_o": either(ZERO, decades(1e-6, 1e4)),
+    "Lambda_i": either(ZERO, decades(1e-6, 1e4)),
+    "color": decades(1e-4, 1e3),
+    "linear": either(decades(1e-6, 1), uniform(0, 1)),
+    "cos_o": COSINE,
+    "sin_o": sine_of("cos_o"),
+    "pixel": integers(2**14),
+    "index": integers(2**32),
+    "stream": integers(3),
+    "v": integers(2**32),
+    "bits": integers(2**32),
+    # of one function, whose argument's name says less than its domain
+    "exp_precise.x": either(uniform(-87, 88), signed(decades(1e-6, 80))),
+    "erfcx_precise.x": either(decades(1e-6, 6.5), uniform(0, 6.5)),
+    "atan2_precise.x": signed(decades(1e-6, 1e6)),
+    "atan2_precise.y": signed(decades(1e-6, 1e6)),
+    "h_beckmann.a": either(decades(1e-6, 9.4), uniform(0, 9.4)),
+    "viridis.x": uniform(-0.1, 1.1),
+    "environment_uv.w": sphere,
+    "environment_direction.u": uniform(0, 1),
+    "environment_direction.s": COSINE,
+}
+FIRST = ("alpha", "cos_o")
+"""Arguments that others are drawn by."""
+
+
+def draw(function, n, rng):
+    """Arguments of the function, n of each, as float32 or uint32 holds them, in its order."""
+    drawn = {}
+    kinds = dict(zip((n for _, n in function.arguments), Signature(function.signature).inputs, strict=True))
+    for name in sorted(kinds, key=lambda name: name not in FIRST):
+        how = DRAWS.get(f"{function.name}.{name}", DRAWS.get(name))
+        assert how, f"{function.file}: {function.name}: say in DRAWS from where the argument {name} is drawn"
+        drawn[name] = how(rng, n, kinds[name].components, drawn).astype(kinds[name].dtype)
+        if kinds[name].dtype is np.float32:
+            drawn[name] = drawn[name].astype(float)
+    return [drawn[name][:, 0] if kinds[name].components == 1 else drawn[name] for _, name in function.arguments]
+
+
+# --- comparison ------------------------------------------------------------------------------------------------------
+
+TINY = float(np.finfo(np.float32).tiny)
+
+# Where float32 cannot know the value, derived:
+FLOORS = {
+    # z Lambda leaves float32's normal range before Lambda does.
+    "smith_beckmann_exact.Lambda": lambda w, alpha: TINY / w[:, 2],
+    # The fit's numerator 1 - 1.259 a + 0.396 a^2 cancels to 0 at a = 1.548: terms up to 2 round to 1.2e-7, and so does a, over a
+    # denominator above 5.7 for a > 1. Lambda is used as 1 + Lambda.
+    "smith_beckmann_rational.Lambda": lambda w, alpha: np.where(
+        w[:, 2] > length(alpha * w[:, :2]), 4 * 1.2e-7 / 5.7, TINY
+    ),
+    # Blacks are differences of numbers near 0.1, and a display value below 1e-6 is black on any screen.
+    "tonemap_aces.tonemap": lambda color: 1e-6,
+    "tonemap_agx.tonemap": lambda color: 1e-6,
+    "tonemap_neutral.tonemap": lambda color: 1e-6,
+}
+
+
+def near_critical(c, eta, k=0.0, share=1e-6):
+    """Where total internal reflection begins: F falls from 1 as -2 (1 + 1/eta^2) t / c with t^2 = eta^2 - sin^2.
+
+    float32 knows t^2 to about 1e-7 c^2 from an exact c and eta, so F errs by more than WORST only where |t^2| < 1e-6 c^2.
+    """
+    if np.ndim(eta) > np.ndim(c):  # a cosine for each triple
+        c = c[:, None]
+    return np.abs((eta + 1j * k) ** 2 - (1 - c) * (1 + c)) < share * c * c
+
+
+EXEMPT = {
+    "fresnel.eta2_cos2_t": near_critical,
+    "fresnel.F_dielectric": near_critical,
+    "fresnel.F_conductor": near_critical,
+    "fresnel_dielectric.F": lambda c, eta, k: near_critical(c, eta),
+    "fresnel_conductor.F": near_critical,
+}
+
+
+def relative_error(value, expected, floor=TINY, components=False):
+    """Errors of float32 values relative to float64 ones; what is below the floor may be any number below it."""
+    value, expected = np.asarray(value, dtype=float), np.asarray(expected, dtype=float)
+    assert value.shape == expected.shape
+    error, size = np.abs(value - expected), np.abs(expected)
+    if not components and expected.ndim > 1:
+        error, size = length(error), length(size)
+    return np.maximum(error - floor, 0) / np.maximum(size, floor)
+
+
+def check(error):
+    """The requirement on relative errors."""
+    __tracebackhide__ = True
+    assert np.all(np.isfinite(error))
+    share, largest = np.mean(error > COMMON), np.max(error)
+    found = f"{share:.3%} of the values err by more than {COMMON:g}; the largest error is {largest:.2g}"
+    print(found)
+    assert share <= 1 - COMMON_SHARE and largest <= WORST, found
+
+
+def chunk_error(gpu, function, twin, text=None, n=40_000):
+    """Relative errors of a chunk's GLSL function, or of another text with the same signature, against its twin."""
+    arguments = draw(function, n, np.random.default_rng(0))
+    include = {"chunk.glsl": text or f'#include "{function.file}"\n'}
+    value = gpu.evaluate(
+        lambda call: assemble("views/probe.frag", generated={**include, "call.glsl": call}),
+        function.signature,
+        *arguments,
+    )[0]
+    with np.errstate(under="ignore"):  # 0 is the right answer in the tails
+        expected = twin(*arguments)
+    if function.name == "visible_slope_beckmann":  # as the direction that it stands for
+        value, expected = vec(value, np.ones(n)), vec(expected, np.ones(n))
+    floor = np.asarray(FLOORS.get(label(function), lambda *_: TINY)(*arguments))
+    error = relative_error(value, expected, floor, function.name in COLORS)
+    exempt = np.broadcast_to(EXEMPT.get(label(function), lambda *_: False)(*arguments), error.shape)
+    assert np.mean(exempt) < 1e-4
+    return error[~exempt]
+
+
+# --- chunks ----------------------------------------------------------------------------------------------------------
+
+
+def test_files_have_twins():
+    package = SHADERS.parent / "brdf_explorer"
+    package = package if package.is_dir() else SHADERS.parent
+    for folder in ("lib", "models"):
+        numpy = {p.stem for p in (package / folder).glob("*.py")} - {"__init__"}
+        assert numpy == {p.stem for p in (SHADERS / folder).glob("*.glsl")}
+
+
+@pytest.mark.parametrize("chunk", CHUNKS)
+def test_functions_and_arguments_have_the_same_names(chunk):
+    numpy = own(twin(chunk))
+    glsl = {f.name: f for f in functions(f"lib/{chunk}.glsl")}
+    assert set(glsl) - ONLY_GLSL.get(chunk, set()) == set(numpy) - ONLY_NUMPY.get(chunk, set())
+    for name in set(glsl) & set(numpy):
+        assert [n for _, n in glsl[name].arguments] == list(inspect.signature(numpy[name]).parameters), name
+
+
+@pytest.mark.parametrize("chunk", CHUNKS)
+def test_constants_are_the_same(chunk):
+    text = (SHADERS / f"lib/{chunk}.glsl").read_text(encoding="utf-8")
+    for name, value in re.findall(r"^const (?:float|uint) (\w+) = ([\d.e+-]+)u?;", text, re.M):
+        assert float(value) == pytest.approx(getattr(twin(chunk), name), rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    "function",
+    [f for f in LIB if not f.over_maps and f.name not in ONLY_GLSL.get(chunk_of(f), ())],
+    ids=label,
+)
+def test_chunk(gpu, function):
+    check(chunk_error(gpu, function, own(twin(chunk_of(function)))[function.name]))
+
+
+# --- models ----------------------------------------------------------------------------------------------------------
+
+
+def within(value, low, high):
+    """The float32 number nearest to `value` that lies in [low, high]."""
+    value = np.float32(value)
+    if float(value) < low:
+        value = np.nextafter(value, np.float32(np.inf))
+    if float(value) > high:
+        value = np.nextafter(value, np.float32(-np.inf))
+    return float(value)
+
+
+def random_params(cls, rng):
+    """Values of a model's params over their ranges, logarithmic and linear, at the low end one time in eight if it is 0."""
+    values = {}
+    for name, p in declared(cls, Param).items():
+        positive = p.low if p.low > 0 else 1e-4 * p.high
+        draws = [decades(positive, p.high)] if p.scale == "log" else [decades(positive, p.high), uniform(p.low, p.high)]
+        value = either(*draws)(rng, p.size, 1, {})[:, 0]
+        if p.low == 0 and rng.random() < 0.125:
+            value[:] = 0
+        value = tuple(within(v, p.low, p.high) for v in value)
+        values[name] = value if p.size > 1 else value[0]
+    return values
+
+
+def pairwise(choices):
+    """A small set of combinations in which each pair of options of two choices occurs."""
+    names = sorted(choices)
+    missing = {frozenset(((a, x), (b, y))) for a, b in combinations(names, 2) for x in choices[a] for y in choices[b]}
+    everything = [dict(zip(names, options, strict=True)) for options in product(*(choices[n] for n in names))]
+    if len(names) < 2:
+        return everything
+    chosen = []
+    while missing:
+        best = max(everything, key=lambda c: sum(pair <= set(c.items()) for pair in missing))
+        missing -= {pair for pair in missing if pair <= set(best.items())}
+        chosen.append(best)
+    return chosen
+
+
+CASES = [
+    (cls, choices)
+    for cls in MODELS.values()
+    for choices in pairwise({name: c.options for name, c in declared(cls, Choice).items()})
+]
+
+
+def case_label(value):
+    return value.name() if isinstance(value, type) else "-".join(value.values())
+
+
+def materials(cls, choices, rng, count=12):
+    """A model at the ends of its params' ranges and at random places."""
+    params = declared(cls, Param)
+    for end in ("low", "high"):
+        yield cls(**choices, **{n: within(getattr(p, end), p.low, p.high) for n, p in params.items()})
+    for _ in range(count - 2):
+        yield cls(**choices, **random_params(cls, rng))
+
+
+def pair(model, rng, n=3_000):
+    """wo and wi (n, 3), as float32 holds them: half of the wi are drawn by the model's sampler, so near the lobe."""
+    wo, wi = (hemisphere(rng, n, 3, {}).astype(np.float32) for _ in range(2))
+    sampled = model.sample_f(wo, rng.random((n, 2)))[0].astype(np.float32)
+    near = (rng.random(n) < 0.5) & (sampled[:, 2] >= 1e-4)
+    return wo.astype(float), np.where(near[:, None], sampled, wi).astype(float)
+
+
+def exempt(model, wo, wi):
+    """near_critical in a model that computes the facet's cosine, (n, 3).
+
+    The cosine has an error of 1.2e-7, so t^2 one of 2.4e-7 c^2. Beyond t = eta^2 / c the slope of F falls as 2 eta^2 / t^2: for
+    eta = 0.1, the worst, F errs by more than WORST where t^2 < 1.8e-4 c^2. In angle that is 0.005 degrees.
+    """
+    if model.choices().get("fresnel") not in ("dielectric", "conductor"):
+        return np.zeros((len(wo), 3), dtype=bool)
+    k = np.array(model.k) if model.fresnel == "conductor" else 0.0
+    found = near_critical(0.5 * length(wo + wi)[:, None], np.array(model.eta), k, 2e-4)
+    assert np.mean(found) < 2e-3
+    return found
+
+
+@pytest.mark.parametrize(("cls", "choices"), CASES, ids=case_label)
+def test_f(gpu, cls, choices):
+    rng, errors = np.random.default_rng(1), []
+    for model in materials(cls, choices, rng):
+        wo, wi = pair(model, rng)
+        # D leaves float32's normal range before f = D F G / (4 cos cos) does
+        floor = TINY / np.minimum(4 * wo[:, 2:] * wi[:, 2:], 1)
+        errors.append(relative_error(gpu.f(model, wo, wi), model.f(wo, wi), floor, True)[~exempt(model, wo, wi)])
+    check(np.concatenate(errors))
+
+
+@pytest.mark.parametrize(("cls", "choices"), CASES, ids=case_label)
+def test_pdf(gpu, cls, choices):
+    rng, errors = np.random.default_rng(2), []
+    for model in materials(cls, choices, rng):
+        wo, wi = pair(model, rng)
+        floor = TINY / np.minimum(4 * wo[:, 2], 1)  # as f, with 4 cos (1 + Lambda) below
+        errors.append(relative_error(gpu.pdf(model, wo, wi), model.pdf(wo, wi), floor))
+    check(np.concatenate(errors))
+
+
+@pytest.mark.parametrize(("cls", "choices"), CASES, ids=case_label)
+def test_sample_f(gpu, cls, choices):
+    """The direction, and the weight as f cos / pdf of that direction, which near the horizon float32's u does not fix."""
+    rng, directions, weights = np.random.default_rng(3), [], []
+    for model in materials(cls, choices, rng):
+        wo, _ = pair(model, rng)
+        u = rng.integers(0, 2**24, (len(wo), 2)) * 2.0**-24
+        wi, weight = gpu.sample_f(model, wo, u)
+        directions.append(relative_error(wi, model.sample_f(wo, u)[0]))
+        wi = wi.astype(float)
+        expected = quotient(model.f(wo, wi) * wi[:, 2:], model.pdf(wo, wi)[:, None])
+        weights.append(relative_error(weight, expected, components=True)[~exempt(model, wo, wi)])
+    check(np.concatenate(directions))
+    check(np.concatenate(weights))
+
+
+# --- the harness itself ----------------------------------------------------------------------------------------------
+
+
+def lib(name):
+    """The GLSL function and the twin of a label, such as ndf_ggx.D."""
+    function = next(f for f in LIB if label(f) == name)
+    return function, own(twin(chunk_of(function)))[function.name]
+
+
+WRONG = {
+    "lost 1/pi": ("ndf_ggx.D", lambda D, wm, alpha: PI * D(wm, alpha)),
+    "exchanged alpha": ("ndf_beckmann.D", lambda D, wm, alpha: D(wm, alpha[:, ::-1])),
+    "mean alpha": ("smith_ggx_exact.Lambda", lambda L, w, alpha: L(w, alpha.mean(axis=-1, keepdims=True) * [1, 1])),
+    "exchanged arguments": ("fresnel.F_schlick", lambda F, c, F0: F(F0, c)),
+    "a last digit": ("shadowing_directional.G2", lambda G, *a: G(*a) * (1 + 2e-5)),
+    "no number": ("fresnel.F0", lambda F0, eta, k: np.where(k > 14, np.nan, F0(eta, k))),
+}
+
+
+@pytest.mark.parametrize("fault", WRONG)
+def test_harness_catches_a_wrong_twin(gpu, fault):
+    name, wrong = WRONG[fault]
+    function, right = lib(name)
+    with pytest.raises(AssertionError):
+        check(chunk_error(gpu, function, lambda *arguments: wrong(right, *arguments)))
+
+
+CANCELLING = {
+    "smith_ggx_exact.Lambda": "vec2 a = alpha * w.xy / w.z; return 0.5 * (sqrt(1.0 + dot(a, a)) - 1.0);",
+    "fresnel.F_dielectric": "float s = sqrt(1.0 - c * c) / eta; if (s >= 1.0) return 1.0; float t = sqrt(1.0 - s * s);"
+    "float rs = (c - eta * t) / (c + eta * t), rp = (eta * c - t) / (eta * c + t); return 0.5 * (rs * rs + rp * rp);",
+}
+
+
+@pytest.mark.parametrize("name", CANCELLING)
+def test_harness_catches_cancellation(gpu, name):
+    function, right = lib(name)
+    with pytest.raises(AssertionError):
+        check(chunk_error(gpu, function, right, f"{function.signature} {{ {CANCELLING[name]} }}"))
+
+
+def test_signatures_are_read():
+    (sampler,) = (f for f in functions("models/microfacet.glsl") if f.name == "sample_f")
+    assert sampler.arguments == [("vec3", "wo"), ("vec2", "u")]
+    assert {f.name for f in functions("models/microfacet.glsl")} == {"f", "pdf", "sample_f"}
+
+
+@pytest.mark.parametrize("cls", MODELS.values(), ids=lambda cls: cls.name())
+def test_models_have_the_functions_of_their_shaders(cls):
+    for function in functions(f"models/{cls.name()}.glsl"):
+        names = list(inspect.signature(getattr(cls, function.name)).parameters)
+        assert names == ["self", *(n for _, n in function.arguments)]
+
+
+def test_pairwise_covers_all_pairs():
+    choices = {"a": ("x", "y"), "b": ("x", "y", "z"), "c": ("x", "y")}
+    covered = {pair for c in pairwise(choices) for pair in combinations(sorted(c.items()), 2)}
+    assert len(covered) == 2 * 3 + 2 * 2 + 3 * 2
