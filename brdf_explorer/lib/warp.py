@@ -1,0 +1,13 @@
+"""Maps from the unit square to directions."""
+
+import numpy as np
+
+from .common import TWO_PI, split, vec
+
+
+def cosine_hemisphere(u):
+    """Directions (..., 3) with density cos(theta) / pi about +z, from u (..., 2) in the unit square."""
+    x, y = split(u)
+    phi = TWO_PI * y
+    r = np.sqrt(x)
+    return vec(r * np.cos(phi), r * np.sin(phi), np.sqrt(1 - x))
