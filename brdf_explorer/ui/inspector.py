@@ -1,0 +1,203 @@
+"""The panels that show and change the state in words and numbers: material, scene, presets. Each maps state to state."""
+
+from dataclasses import replace
+from functools import partial
+
+from imgui_bundle import imgui
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from ..model import declared
+from ..models import MODELS
+from ..state import Material, presets
+from ..views.picture import PALETTES
+from . import widgets
+from .theme import SMALL, points, u32, vec
+
+
+def material(state, memory, used):
+    """The list of materials, and the active one's model and parameters. used(name): whether the shader reads a parameter."""
+    widgets.heading("Materials")
+    state = materials(state, memory)
+    widgets.gap(2)
+    imgui.separator()
+    widgets.gap(2)
+    widgets.heading("Model")
+    name = state.model.name()
+    chosen = widgets.choose(tuple(MODELS), name, (type(state.model).__doc__ or "").split("\n\n")[0])
+    if chosen != name:
+        state = with_other_model(state, MODELS[chosen])
+    widgets.gap(2)
+    model = widgets.fields(state.model, memory, used)
+    if model != state.model:
+        state = state.with_model(model)
+    if state.material.source:
+        widgets.gap(2)
+        imgui.push_font(None, SMALL)
+        imgui.push_style_color(imgui.Col_.text, vec("muted"))
+        imgui.text_wrapped(state.material.source)
+        imgui.pop_style_color()
+        imgui.pop_font()
+    return state
+
+
+def with_other_model(state, cls):
+    """The active material with another model, which keeps the parameters that both declare alike."""
+    old, new = state.model, cls()
+    kept = {n: getattr(old, n) for n, d in declared(cls).items() if declared(old).get(n) == d}
+    name = cls.name() if state.material.name == old.name() else state.material.name
+    materials = list(state.materials)
+    materials[state.active] = Material(name, replace(new, **kept))
+    return replace(state, materials=tuple(materials))
+
+
+def materials(state, memory):
+    """A row for each material: select, rename, remove; and one to add a copy."""
+    curves = PALETTES[state.look.theme]["curves"]
+    side = imgui.get_frame_height()
+    for i, material in enumerate(state.materials):
+        imgui.push_id(i)
+        start = imgui.get_cursor_pos()
+        if memory.get("renaming") == i:
+            state = rename(state, i, memory)
+            imgui.pop_id()
+            continue
+        imgui.set_next_item_allow_overlap()
+        size = (imgui.get_content_region_avail().x, side)
+        if bar("##row", i == state.active, size):
+            state = replace(state, active=i)
+            if imgui.is_mouse_double_clicked(0):
+                memory["renaming"] = i
+        a, b = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        inside = imgui.is_mouse_hovering_rect(a, b) and imgui.is_window_hovered(imgui.HoveredFlags_.child_windows)
+        drawing = imgui.get_window_draw_list()
+        drawing.add_circle_filled((a.x + points(13), (a.y + b.y) / 2), points(4.5), u32(curves[i % len(curves)]))
+        top = (a.y + b.y - imgui.get_text_line_height()) / 2
+        drawing.push_clip_rect(a, (b.x - (2 * side if inside else points(8)), b.y), True)
+        drawing.add_text((a.x + points(26), top), u32("ink"), material.name)
+        model_at = a.x + points(26) + imgui.calc_text_size(material.name + "  ").x
+        drawing.add_text(
+            (model_at, top), u32("muted"), material.model.name() * (material.model.name() != material.name)
+        )
+        drawing.pop_clip_rect()
+        if inside or i == state.active:
+            imgui.set_cursor_pos((start.x + size[0] - side * (1 + (len(state.materials) > 1)), start.y))
+            if widgets.icon(icons.ICON_FA_PEN, "rename", faint=not inside):
+                memory["renaming"] = i
+            widgets.hint("Rename")
+            if len(state.materials) > 1:
+                imgui.same_line(0, 0)
+                if widgets.icon(icons.ICON_FA_XMARK, "remove", faint=not inside):
+                    state = removed(state, i)
+                widgets.hint("Remove")
+        imgui.pop_id()
+        if i >= len(state.materials) - 1:
+            break
+    if imgui.button(f"{icons.ICON_FA_PLUS}  Compare with a copy###copy", (imgui.get_content_region_avail().x, 0)):
+        copy = replace(state.material, name=f"{state.material.name} {len(state.materials) + 1}")
+        state = replace(state, materials=(*state.materials, copy), active=len(state.materials))
+    widgets.hint("Add a copy of the active material", "The polar slice shows all materials over each other")
+    return state
+
+
+def bar(name, chosen, size):
+    """An empty row of a list, as wide as the buttons around it; True when it is clicked."""
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, (0, imgui.get_style().item_spacing.y))
+    pressed = imgui.selectable(name, chosen, imgui.SelectableFlags_.allow_double_click, size)[0]
+    imgui.pop_style_var()
+    return pressed
+
+
+def rename(state, i, memory):
+    """The text field in place of a material's row, until editing ends."""
+    if not memory.get("rename focused"):
+        imgui.set_keyboard_focus_here()
+    imgui.set_next_item_width(imgui.get_content_region_avail().x)
+    text = memory.get("rename text", state.materials[i].name)
+    _, memory["rename text"] = imgui.input_text("##name", text, imgui.InputTextFlags_.auto_select_all)
+    if imgui.is_item_active():
+        memory["rename focused"] = True
+    elif memory.get("rename focused"):
+        text = memory["rename text"].strip()
+        for key in ("renaming", "rename focused", "rename text"):
+            memory.pop(key, None)
+        if text and not imgui.is_key_pressed(imgui.Key.escape):
+            changed = replace(state.materials[i], name=text)
+            return replace(state, materials=(*state.materials[:i], changed, *state.materials[i + 1 :]))
+    return state
+
+
+def removed(state, i):
+    """The state without a material; the active one stays, or the one before it becomes active."""
+    rest = state.materials[:i] + state.materials[i + 1 :]
+    active = state.active - (i < state.active or state.active == len(rest))
+    return replace(state, materials=rest, active=active)
+
+
+def scene(state, memory):
+    """Directions, light and look."""
+    for title, section in (("Viewer", "directions"), ("Light", "light"), ("Display", "look")):
+        if section != "directions":
+            widgets.gap(4)
+        widgets.heading(title)
+        imgui.push_id(section)
+        used = partial(lit, state.light) if section == "light" else lambda name: True
+        value = widgets.fields(getattr(state, section), memory, used)
+        imgui.pop_id()
+        if value != getattr(state, section):
+            state = replace(state, **{section: value})
+    return state
+
+
+def lit(light, name):
+    """Whether a parameter of the light matters as the others are."""
+    if name in ("theta", "phi"):
+        return light.irradiance > 0
+    if name in ("gain", "rotation"):
+        return light.environment != "none"
+    return name != "file" or light.environment == "file"
+
+
+def browse(state, memory, load):
+    """The presets of the package, with a search. load(name, add): open one over the state."""
+    imgui.set_next_item_width(imgui.get_content_region_avail().x)
+    words = memory.get("search", "")
+    _, memory["search"] = imgui.input_text_with_hint(
+        "##search", f"{icons.ICON_FA_MAGNIFYING_GLASS}  Search presets", words
+    )
+    wanted = memory["search"].lower().split()
+    if "presets" not in memory:
+        memory["presets"] = presets()
+    side = imgui.get_frame_height()
+    found = 0
+    for kind, title in (("materials", "Materials"), ("scenes", "Scenes")):
+        names = [n for n, path in memory["presets"].items() if path.parent.name == kind]
+        names = [n for n in names if all(w in n.lower() for w in wanted)]
+        if not names:
+            continue
+        found += len(names)
+        widgets.gap(2)
+        widgets.heading(title)
+        for name in names:
+            imgui.push_id(name)
+            imgui.set_next_item_allow_overlap()
+            width = imgui.get_content_region_avail().x
+            start = imgui.get_cursor_pos()
+            pressed = bar("##preset", False, (width, side))
+            a, b = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+            inside = imgui.is_mouse_hovering_rect(a, b)
+            at = (a.x + points(10), (a.y + b.y - imgui.get_text_line_height()) / 2)
+            imgui.get_window_draw_list().add_text(at, u32("ink"), name.replace("-", " ").replace("_", " "))
+            if pressed:
+                state = load(name, False)
+            if kind == "materials" and inside:
+                imgui.set_cursor_pos((start.x + width - side, start.y))
+                if widgets.icon(icons.ICON_FA_PLUS, "add"):
+                    state = load(name, True)
+                widgets.hint("Add to the materials, to compare")
+            imgui.pop_id()
+    if not found:
+        widgets.gap(2)
+        imgui.push_style_color(imgui.Col_.text, vec("muted"))
+        imgui.text_wrapped("No preset has these words in its name." if wanted else "No presets.")
+        imgui.pop_style_color()
+    return state

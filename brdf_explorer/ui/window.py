@@ -1,0 +1,412 @@
+"""The window: its loop, layout, toolbar and shortcuts. `Window.state` is what is shown; panels map it to the next."""
+
+import os
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import moderngl
+from imgui_bundle import hello_imgui, imgui  # before glfw: one libglfw is loaded, and it must be imgui's
+from imgui_bundle.immapp import icons_fontawesome_6 as icons
+
+from ..glsl import of_model
+from ..gpu import Gpu
+from ..model import Invalid, Param, declared
+from ..state import PRESETS, SECTIONS, dumps, load, loads, save
+from ..views import VIEWS
+from . import files, inspector, theme, widgets
+from .canvas import Canvas
+from .history import History
+from .theme import points, vec
+
+TITLE = "BRDF Explorer"
+SIZE = (1280, 800)
+COLUMN = 348  # points of the inspector's column
+SAVING = 10.0  # most seconds that a picture to be saved may get better in
+LASTS = 3.0  # seconds that a notice stays, if it is no error
+IDLE = 0.2  # frames a second while nothing happens; input wakes the window at once
+C = imgui.Key
+
+
+class Window:
+    """The window on a state."""
+
+    def __init__(self, state, path=None):
+        self.state, self.path = state, path
+        self.history = History(state)
+        self.canvases = {name: Canvas(name) for name in VIEWS}
+        self.memory = {}  # what widgets remember: links, text being typed
+        self.notice, self.notice_error, self.notice_since = "", False, 0.0
+        self.dialog = None
+        self.dropped = []
+        self.gpu = None
+        self.theme = None
+        self.used = {}  # (model class, choices) -> names of the parameters that its shader reads
+
+    def run(self):
+        """Show the window until it is closed. Raises Invalid where there is no screen."""
+        if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+            raise Invalid("no screen: neither DISPLAY nor WAYLAND_DISPLAY is set, so no window can open")
+        hello_imgui.run(self.parameters())
+
+    def parameters(self, size=SIZE):
+        """hello_imgui's description of this window."""
+        p = hello_imgui.RunnerParams()
+        p.app_window_params.window_title = TITLE
+        p.app_window_params.window_geometry.size = size
+        p.app_window_params.restore_previous_geometry = True
+        p.imgui_window_params.default_imgui_window_type = (
+            hello_imgui.DefaultImGuiWindowType.provide_full_screen_dock_space
+        )
+        p.imgui_window_params.remember_theme = False
+        p.ini_folder_type = hello_imgui.IniFolderType.app_user_config_folder
+        p.ini_filename = "brdf-explorer/window.ini"
+        p.ini_filename_use_app_window_title = False
+        p.renderer_backend_options.open_gl_options.anti_aliasing_samples = 0
+        p.fps_idling.fps_idle = IDLE
+        p.fps_idling.time_active_after_last_event = 0.8
+        p.docking_params = self.docking(size)
+        p.callbacks.load_additional_fonts = theme.load_fonts
+        p.callbacks.setup_imgui_style = theme.set_sizes
+        p.callbacks.post_init = self.begin
+        p.callbacks.pre_new_frame = self.set_theme
+        p.callbacks.show_gui = self.frame
+        p.callbacks.before_imgui_render = self.settle
+        options = hello_imgui.EdgeToolbarOptions()
+        options.size_em, options.window_padding_em = 2.8, (1.0, 0.5)
+        p.callbacks.add_edge_toolbar(hello_imgui.EdgeToolbarType.top, self.toolbar, options)
+        return p
+
+    def docking(self, size):
+        """The inspector's column at the left, the sphere large, lobe and polar slice at the right."""
+        split, direction = hello_imgui.DockingSplit, imgui.Dir
+        layout = hello_imgui.DockingParams()
+        layout.main_dock_space_node_flags = imgui.DockNodeFlags_.none
+        layout.docking_splits = [
+            split("MainDockSpace", "Inspector", direction.left, COLUMN / size[0]),
+            split("MainDockSpace", "Right", direction.right, 0.46),
+            split("Right", "Right foot", direction.down, 0.5),
+        ]
+        places = {"sphere": "MainDockSpace", "lobe": "Right", "polar": "Right foot"}
+        panels = [("Material", "Inspector", self.material), ("Scene", "Inspector", self.scene)]
+        panels.append(("Presets", "Inspector", self.presets))
+        for name, view in VIEWS.items():
+            panels.append((view.title, places.get(name, "MainDockSpace"), lambda name=name: self.view(name)))
+        windows = [hello_imgui.DockableWindow(*panel) for panel in panels]
+        for window in windows:
+            window.can_be_closed = window.call_begin_end = False
+        layout.dockable_windows = windows
+        return layout
+
+    def begin(self):
+        """Attach to the window's OpenGL, and take files that are dropped on it."""
+        import glfw
+        from imgui_bundle.glfw_utils import glfw_window_hello_imgui
+
+        self.gpu = Gpu(moderngl.create_context(require=330))
+        self.glfw_window = glfw_window_hello_imgui()
+        glfw.set_drop_callback(self.glfw_window, lambda _, paths: self.dropped.extend(paths))
+
+    def set_theme(self):
+        if self.theme != self.state.look.theme:
+            self.theme = self.state.look.theme
+            theme.set_colors(self.theme)
+
+    # --- a frame ---------------------------------------------------------------------------------------------------------
+
+    def frame(self):
+        """What comes before the panels: shortcuts, dialogs, files."""
+        self.shortcuts()
+        while self.dropped:
+            self.open(self.dropped.pop(0))
+        if wanted := self.memory.pop("browse", None):
+            self.ask_file(*wanted)
+        if self.dialog:
+            answer = self.dialog.ask()
+            if answer is not None:
+                dialog, self.dialog = self.dialog, None
+                if answer:
+                    self.attempt(dialog.then, answer)
+        self.show_notice()
+        waiting = self.dialog or (self.notice and not self.notice_error)
+        hello_imgui.get_runner_params().fps_idling.fps_idle = 10.0 if waiting else IDLE
+
+    def settle(self):
+        """One step of undo for each action that ended, a drag when the mouse is let go."""
+        if not imgui.is_any_item_active() and not imgui.is_mouse_down(0):
+            self.history.settle(self.state)
+
+    def attempt(self, action, *arguments):
+        """Do what may find its input Invalid, and say so in the window."""
+        try:
+            return action(*arguments)
+        except Invalid as error:
+            self.say(str(error), error=True)
+
+    def say(self, words, error=False):
+        self.notice, self.notice_error, self.notice_since = words, error, time.monotonic()
+
+    def show_notice(self):
+        """The notice at the window's foot: an error stays until it is closed or something else is said."""
+        if not self.notice:
+            return
+        if not self.notice_error and time.monotonic() - self.notice_since > LASTS:
+            self.notice = ""
+            return
+        area = imgui.get_main_viewport()
+        at = (area.work_pos.x + area.work_size.x / 2, area.work_pos.y + area.work_size.y - points(20))
+        imgui.set_next_window_pos(at, imgui.Cond_.always, (0.5, 1.0))
+        F = imgui.WindowFlags_
+        imgui.push_style_color(imgui.Col_.window_bg, vec("error_back" if self.notice_error else "raised"))
+        imgui.push_style_color(imgui.Col_.text, vec("error" if self.notice_error else "ink"))
+        imgui.push_style_var(imgui.StyleVar_.window_rounding, points(8))
+        flags = F.no_decoration | F.always_auto_resize | F.no_docking | F.no_saved_settings | F.no_focus_on_appearing
+        imgui.begin("##notice", None, flags | F.no_nav | F.no_move)
+        imgui.internal.bring_window_to_display_front(imgui.internal.get_current_window())
+        imgui.push_text_wrap_pos(min(points(640), area.work_size.x * 0.7))
+        imgui.align_text_to_frame_padding()
+        imgui.text(self.notice)
+        imgui.pop_text_wrap_pos()
+        imgui.same_line()
+        if widgets.icon(icons.ICON_FA_XMARK, "dismiss"):
+            self.notice = ""
+        imgui.end()
+        imgui.pop_style_var()
+        imgui.pop_style_color(2)
+
+    # --- panels ----------------------------------------------------------------------------------------------------------
+
+    def material(self):
+        if begin("Material"):
+            self.state = inspector.material(self.state, self.memory, self.reads)
+        imgui.end()
+
+    def scene(self):
+        if begin("Scene"):
+            self.state = inspector.scene(self.state, self.memory)
+        imgui.end()
+
+    def presets(self):
+        if begin("Presets"):
+            self.state = inspector.browse(self.state, self.memory, self.preset)
+        imgui.end()
+
+    def view(self, name):
+        imgui.push_style_var(imgui.StyleVar_.window_padding, (0, 0))
+        imgui.push_style_color(imgui.Col_.window_bg, vec("backdrop" if name == "sphere" else "paper"))
+        flags = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
+        shown = imgui.begin(VIEWS[name].title, None, flags)[0]
+        imgui.pop_style_color()
+        imgui.pop_style_var()
+        if shown:
+            self.state = self.canvases[name].panel(self.gpu, self.state, self.memory, self.export)
+        imgui.end()
+
+    def reads(self, name):
+        """Whether the active model's shader reads a parameter; choices always count."""
+        model = self.state.model
+        key = (type(model), tuple(model.choices().items()))
+        if key not in self.used:
+            try:
+                program = self.gpu.program(of_model("views/table.frag", model))
+                self.used[key] = {n for n in declared(model, Param) if f"material.{n}" in program}
+            except Invalid:
+                return True
+        return name in self.used[key] or name not in declared(model, Param)
+
+    def toolbar(self):
+        """The bar at the top: what is open, and what can be done."""
+        imgui.push_font(theme.fonts["bold"], theme.TEXT + 1)
+        imgui.align_text_to_frame_padding()
+        imgui.text(TITLE)
+        imgui.pop_font()
+        imgui.same_line(0, points(14))
+        imgui.text_disabled(self.state.material.name)
+        dark = self.state.look.theme == "dark"
+        history = self.history
+        pending = self.state is not history.settled and self.state != history.settled
+        buttons = [
+            (icons.ICON_FA_ROTATE_LEFT, "undo", "Undo", "Ctrl+Z", self.undo, bool(history.past) or pending),
+            (icons.ICON_FA_ROTATE_RIGHT, "redo", "Redo", "Ctrl+Shift+Z or Ctrl+Y", self.redo, bool(history.future)),
+            None,
+            (
+                icons.ICON_FA_FOLDER_OPEN,
+                "open",
+                "Open a preset, or a picture that carries one",
+                "Ctrl+O",
+                self.ask_open,
+                True,
+            ),
+            (icons.ICON_FA_FLOPPY_DISK, "save", "Save as a preset", "Ctrl+S", self.save, True),
+            None,
+            (icons.ICON_FA_COPY, "copy state", "Copy the state as text", "Ctrl+C", self.copy, True),
+            (icons.ICON_FA_PASTE, "paste state", "Paste a state", "Ctrl+V", self.paste, True),
+            None,
+            (
+                icons.ICON_FA_SUN if dark else icons.ICON_FA_MOON,
+                "theme",
+                f"{'Light' if dark else 'Dark'} theme",
+                "",
+                self.switch_theme,
+                True,
+            ),
+            (icons.ICON_FA_ELLIPSIS, "more", "More", "", lambda: imgui.open_popup("more"), True),
+        ]
+        side, space = imgui.get_frame_height(), points(14)
+        count, breaks = sum(b is not None for b in buttons), buttons.count(None)
+        imgui.same_line(imgui.get_window_width() - count * (side + points(2)) - breaks * space - points(10))
+        for button in buttons:
+            if button is None:
+                imgui.same_line(0, space)
+                continue
+            symbol, name, words, keys, action, enabled = button
+            if widgets.icon(symbol, name, enabled, size=side):
+                action()
+            widgets.hint(words, *[keys] * bool(keys))
+            imgui.same_line(0, points(2))
+        self.menu()
+
+    def menu(self):
+        if imgui.begin_popup("more"):
+            if imgui.menu_item("Save as ...", "Ctrl+Shift+S", False)[0]:
+                self.ask_save()
+            if imgui.menu_item("Reload shaders", "F5", False)[0]:
+                self.reload()
+            if imgui.menu_item("Restore the layout", "", False)[0]:
+                hello_imgui.get_runner_params().docking_params.layout_reset = True
+            imgui.end_popup()
+
+    def shortcuts(self):
+        io = imgui.get_io()
+        pressed = imgui.is_key_chord_pressed
+        ctrl, shift = C.mod_ctrl, C.mod_shift
+        if pressed(C.f5):
+            self.reload()
+        if pressed(ctrl | C.o):
+            self.ask_open()
+        if pressed(ctrl | C.s):
+            self.save()
+        if pressed(ctrl | shift | C.s):
+            self.ask_save()
+        if io.want_text_input:
+            return
+        if pressed(ctrl | C.z):
+            self.undo()
+        if pressed(ctrl | shift | C.z) or pressed(ctrl | C.y):
+            self.redo()
+        if pressed(ctrl | C.c):
+            self.copy()
+        if pressed(ctrl | C.v):
+            self.paste()
+
+    # --- actions -----------------------------------------------------------------------------------------------------------
+
+    def undo(self):
+        self.state = self.history.undo(self.state)
+
+    def redo(self):
+        self.state = self.history.redo(self.state)
+
+    def copy(self):
+        imgui.set_clipboard_text(dumps(self.state))
+        self.say("The state is on the clipboard, as text")
+
+    def paste(self):
+        def take(text):
+            self.state = loads(text, "clipboard", self.state)
+            self.say("Pasted")
+
+        self.attempt(take, imgui.get_clipboard_text() or "")
+
+    def open(self, path):
+        """A preset, a picture that carries one, or else an environment's picture."""
+
+        def take(path):
+            suffix = Path(path).suffix.lower()
+            try:
+                if suffix == ".hdr":
+                    raise Invalid(f"{path}: carries no preset")
+                self.state = load(path, self.state)
+            except Invalid:
+                if suffix not in (".hdr", ".exr"):
+                    raise
+                self.state = replace(self.state, light=replace(self.state.light, environment="file", file=str(path)))
+            self.path = path if str(path).endswith(".toml") else None
+            self.say(f"Opened {path}")
+
+        self.attempt(take, path)
+
+    def preset(self, name, add):
+        """The state with a preset of the package: a material in place of the active one, or beside it; or a scene."""
+        new = self.attempt(load, name, self.state)
+        if new is None or new.materials is self.state.materials:
+            return new or self.state
+        old, active = self.state.materials, self.state.active
+        found = new.materials
+        if add:
+            return replace(new, materials=old + found, active=len(old))
+        return replace(new, materials=old[:active] + found + old[active + 1 :], active=active)
+
+    def save(self):
+        """Save where the preset came from, but not over the package's own."""
+        path = Path(self.path or "")
+        if path.suffix != ".toml" or path.resolve().is_relative_to(PRESETS.resolve()):
+            self.ask_save()
+        else:
+            self.attempt(self.save_to, path)
+
+    def save_to(self, path):
+        path = path if path.suffix == ".toml" else path.with_name(path.name + ".toml")
+        save(self.state, path)
+        self.path = path
+        self.say(f"Saved {path}")
+
+    def ask_open(self):
+        self.dialog = self.dialog or files.Dialog("Open a preset", self.open)
+
+    def ask_file(self, cls, name):
+        """Ask for the file that a text of a section of the state names."""
+
+        def take(path):
+            for section in SECTIONS:
+                if type(value := getattr(self.state, section)) is cls:
+                    self.state = replace(self.state, **{section: replace(value, **{name: str(path)})})
+
+        self.dialog = self.dialog or files.Dialog("Choose a picture", take, filters=["Pictures", "*.exr *.hdr"])
+
+    def ask_save(self):
+        name = f"{self.state.material.name}.toml".replace("/", "-")
+        self.dialog = self.dialog or files.Dialog("Save the preset", self.save_to, name, ["Presets", "*.toml"])
+
+    def export(self, name, size, scale):
+        """Ask where to save the picture of a view, as large as it is in its panel, and save it."""
+
+        def write(path):
+            from ..export import save_view
+
+            try:
+                note = save_view(self.gpu, self.state, name, path, size, scale, seconds=SAVING)
+            finally:
+                self.gpu.ctx.screen.use()
+                self.reload()  # the pictures' targets were drawn over
+            self.say(f"Saved {path}" + f" ({note})" * bool(note))
+
+        proposal = f"{self.state.material.name}-{name}.png".replace("/", "-").replace(" ", "-")
+        filters = ["Pictures and curves", "*.png *.exr *.svg *.pdf *.csv"]
+        self.dialog = self.dialog or files.Dialog("Save the picture", write, proposal, filters)
+
+    def reload(self):
+        """Draw all pictures anew, from the shaders as they are on disk now."""
+        self.used.clear()
+        for canvas in self.canvases.values():
+            canvas.restart()
+
+    def switch_theme(self):
+        other = "light" if self.state.look.theme == "dark" else "dark"
+        self.state = replace(self.state, look=replace(self.state.look, theme=other))
+
+
+def begin(label):
+    """Begin a panel of the inspector; whether it is seen."""
+    return imgui.begin(label)[0]
