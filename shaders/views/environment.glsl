@@ -1,5 +1,6 @@
-// Radiance that the surface sends to the eye from all around, by one direction from the BSDF and one from the map a pass, weighted by the balance
-// heuristic. Veach and Guibas 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", Eq. 14.
+// Radiance that the surface sends to the eye from all around: each pass draws one direction from the BSDF and one from the
+// map and weighs them by the balance heuristic. Veach and Guibas 1995, "Optimally Combining Sampling Techniques for Monte
+// Carlo Rendering", Eq. 14.
 #include "lib/environment.glsl"
 #include "lib/random.glsl"
 
@@ -13,10 +14,10 @@ vec3 radiance_environment(vec3 wo, mat3 frame) {
   vec3 wi;
   vec3 weight = sample_f(wo, random2(pixel, pass, STREAM_BSDF), wi);
   vec3 sum = vec3(0.0);
-  if (wi.z > 0.0) {
-    vec3 world = turn * (frame * wi);
+  if (wi.z > HORIZON) {
+    vec4 seen = environment_lookup(map, turn * (frame * wi));  // radiance, and the other sampler's density
     float own = pdf(wo, wi);
-    sum += weight * environment_radiance(map, world) * (own / (own + pdf_environment(map, world)));
+    sum += weight * seen.rgb * (own / (own + seen.a));
   }
   float other;
   vec3 world = sample_environment(map, cdf, random2(pixel, pass, STREAM_LIGHT), other);
