@@ -92,6 +92,7 @@ class Gpu:
 
     def __init__(self, ctx):
         self.ctx = ctx
+        ctx.gc_mode = "context_gc"  # what Python drops is released by the next draw, in the thread of the context
         self.programs = {}
         self.targets = {}
         self.buffers = {}
@@ -126,15 +127,13 @@ class Gpu:
 
     def _kept(self, name, form, make):
         if name in self.targets:
-            framebuffer, attachments, old = self.targets[name]
+            framebuffer, old = self.targets[name]
             if old == form:
                 return framebuffer
-            for resource in (framebuffer, *attachments):
-                resource.release()
         attachments = make()
         framebuffer = self.ctx.framebuffer(attachments[:1], *attachments[1:])
         framebuffer.clear()
-        self.targets[name] = (framebuffer, attachments, form)
+        self.targets[name] = (framebuffer, form)
         return framebuffer
 
     def texture(self, array):
@@ -175,6 +174,7 @@ class Gpu:
         if key not in self.arrays:
             self.arrays[key] = self.ctx.vertex_array(program, [], index_buffer=index)
         ctx = self.ctx
+        ctx.gc()
         ctx.enable_only((moderngl.BLEND if blend else 0) | (moderngl.DEPTH_TEST if depth else 0))
         if blend:
             ctx.blend_func = BLENDING[blend]
@@ -252,8 +252,6 @@ class Gpu:
             data = np.frombuffer(target.read(components=4, attachment=i, dtype="f4"), np.float32).reshape(-1, 4)
             data = data[:count, : kind.components].reshape(*shape, kind.components)
             results.append(data[..., 0] if kind.components == 1 else data)
-        for resource in (target, *outputs, *textures.values()):
-            resource.release()
         return results
 
 

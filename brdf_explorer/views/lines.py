@@ -44,4 +44,3 @@ def draw_lines(gpu, target, strokes):
     box = (*(corners.min(axis=0) - margin), *(corners.max(axis=0) + margin))
     picture = {"picture": layer.color_attachments[0]}
     gpu.draw(over, target, {"share": 1.0}, picture, blend="premultiplied", box=box)
-    points.release()

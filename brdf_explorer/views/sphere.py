@@ -102,8 +102,5 @@ def environment_textures(gpu, light):
     """The textures of the light's environment, kept with the Gpu until another one is asked for."""
     found = environment(light.environment, light.file)
     if gpu.environment is None or gpu.environment[0] is not found:
-        if gpu.environment:
-            for texture in gpu.environment[1].values():
-                texture.release()
         gpu.environment = (found, {"map": gpu.texture(found.map), "cdf": gpu.texture(found.cdf)})
     return gpu.environment[1]
