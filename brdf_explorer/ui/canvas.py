@@ -21,7 +21,7 @@ class Canvas:
         self.name = name
         self.restart()
         self.picture = None
-        self.developed, self.look = None, None
+        self.shown, self.look = None, None
 
     def restart(self):
         """Draw the picture anew at the next frame, from shaders as they are then."""
@@ -52,10 +52,14 @@ class Canvas:
             return None
         if stepped or self.look != state.look:
             try:
-                self.developed, self.look = develop(gpu, self.picture, state.look), state.look
+                developed, self.look = develop(gpu, self.picture, state.look), state.look
             except Invalid as error:
                 self.error = str(error)
-        return self.developed
+            else:
+                # a copy stays as it is when the next drawing fails half way
+                self.shown = gpu.target(f"window {self.name}", developed.size, 4, "f1")
+                gpu.ctx.copy_framebuffer(self.shown, developed)
+        return self.shown
 
     @property
     def busy(self):

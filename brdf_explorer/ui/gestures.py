@@ -19,7 +19,7 @@ def light(state, view, at, size):
 
 def turn(state, delta, scale):
     """The environment turned by a drag, where there is no directional light to move."""
-    rotation = (state.light.rotation + ORBIT * delta[0] / scale + 180) % 360 - 180
+    rotation = (state.light.rotation - ORBIT * delta[0] / scale + 180) % 360 - 180
     return replace(state, light=replace(state.light, rotation=round(rotation, 1)))
 
 

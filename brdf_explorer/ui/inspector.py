@@ -1,21 +1,27 @@
 """The panels that show and change the state in words and numbers: material, scene, presets. Each maps state to state."""
 
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
+import numpy as np
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from ..model import declared
+from ..model import Choice, Param, declared
 from ..models import MODELS
 from ..state import Material, presets
 from ..views.picture import PALETTES
 from . import widgets
 from .theme import SMALL, points, u32, vec
 
+# unit vectors in general position, far from the normal: what matters to f changes its value at one of them
+WO = np.array([0.96, 0.0, 0.28])
+WI = np.array([[0.0, 0.8, 0.6], [-0.576, 0.768, 0.28], [-0.96, 0.0, 0.28]])
+FIRST = 4  # frames that are not kept waiting for it
 
-def material(state, memory, used):
-    """The list of materials, and the active one's model and parameters. used(name): whether the shader reads a parameter."""
+
+def material(state, memory):
+    """The list of materials, and the active one's model and parameters."""
     widgets.heading("Materials")
     state = materials(state, memory)
     widgets.gap(2)
@@ -27,7 +33,10 @@ def material(state, memory, used):
     if chosen != name:
         state = with_other_model(state, MODELS[chosen])
     widgets.gap(2)
-    model = widgets.fields(state.model, memory, used)
+    used = declared(state.model)
+    if imgui.get_frame_count() > FIRST:
+        used = matters(type(state.model), tuple(state.model.choices().items()))
+    model = widgets.fields(state.model, memory, used.__contains__)
     if model != state.model:
         state = state.with_model(model)
     if state.material.source:
@@ -38,6 +47,21 @@ def material(state, memory, used):
         imgui.pop_style_color()
         imgui.pop_font()
     return state
+
+
+@cache
+def matters(cls, choices):
+    """Names of the parameters that change a model's f when these choices are made; with F = 1, say, eta and k do not."""
+    middle = {}
+    for name, p in declared(cls, Param).items():
+        middle[name] = p.low**0.1 * p.high**0.9 if p.scale == "log" else p.low + type(p.low)(0.6 * (p.high - p.low))
+    model = cls(**dict(choices), **middle)
+    names = set()
+    for name, declaration in declared(cls).items():
+        others = declaration.options if isinstance(declaration, Choice) else (declaration.low, declaration.high)
+        if any(not np.array_equal(replace(model, **{name: other}).f(WO, WI), model.f(WO, WI)) for other in others):
+            names.add(name)
+    return names
 
 
 def with_other_model(state, cls):

@@ -10,9 +10,8 @@ import moderngl
 from imgui_bundle import hello_imgui, imgui  # before glfw: one libglfw is loaded, and it must be imgui's
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from ..glsl import of_model
 from ..gpu import Gpu
-from ..model import Invalid, Param, declared
+from ..model import Invalid
 from ..state import PRESETS, SECTIONS, dumps, load, loads, save
 from ..views import VIEWS
 from . import files, inspector, theme, widgets
@@ -42,7 +41,6 @@ class Window:
         self.dropped = []
         self.gpu = None
         self.theme = None
-        self.used = {}  # (model class, choices) -> names of the parameters that its shader reads
 
     def run(self):
         """Show the window until it is closed. Raises Invalid where there is no screen."""
@@ -179,7 +177,7 @@ class Window:
 
     def material(self):
         if begin("Material"):
-            self.state = inspector.material(self.state, self.memory, self.reads)
+            self.state = inspector.material(self.state, self.memory)
         imgui.end()
 
     def scene(self):
@@ -202,18 +200,6 @@ class Window:
         if shown:
             self.state = self.canvases[name].panel(self.gpu, self.state, self.memory, self.export)
         imgui.end()
-
-    def reads(self, name):
-        """Whether the active model's shader reads a parameter; choices always count."""
-        model = self.state.model
-        key = (type(model), tuple(model.choices().items()))
-        if key not in self.used:
-            try:
-                program = self.gpu.program(of_model("views/table.frag", model))
-                self.used[key] = {n for n in declared(model, Param) if f"material.{n}" in program}
-            except Invalid:
-                return True
-        return name in self.used[key] or name not in declared(model, Param)
 
     def toolbar(self):
         """The bar at the top: what is open, and what can be done."""
@@ -398,7 +384,6 @@ class Window:
 
     def reload(self):
         """Draw all pictures anew, from the shaders as they are on disk now."""
-        self.used.clear()
         for canvas in self.canvases.values():
             canvas.restart()
 

@@ -1,0 +1,428 @@
+"""The real window, driven by imgui's test engine on glfw's null platform: no screen is needed.
+
+Each function of ACTS plays the user in one window, which runs in a process of its own: `python tests/test_ui.py FOLDER SCALE`.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import traceback
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+SIZE = (1280, 800)
+ACTS = {}
+
+
+def act(function):
+    ACTS[function.__name__] = function
+    return function
+
+
+# --- what the user does ------------------------------------------------------------------------------------------------
+
+
+@act
+def a_slider_is_one_step_of_undo(user):
+    before, start = user.pictures(), user.state
+    user.ctx.item_drag_with_delta("//Material/alpha/##0", (-60, 0))
+    assert user.state.model.alpha[0] == user.state.model.alpha[1] < start.model.alpha[0]
+    assert replace(user.state.model, alpha=start.model.alpha) == start.model
+    after, moved = user.pictures(), user.state
+    assert all(not np.array_equal(before[name], after[name]) for name in before)
+    assert len(user.window.history.past) == 1
+    user.keys("ctrl", "z")
+    assert user.state == start
+    assert all(np.array_equal(before[name], picture) for name, picture in user.pictures().items())
+    user.keys("ctrl", "y")
+    assert user.state == moved
+    user.item("undo")
+    user.item("redo")
+    assert user.state == moved
+
+
+@act
+def a_value_is_typed_and_reset(user):
+    slider = "//Material/alpha/##0"
+    user.ctx.item_input_value(slider, 0.0001)
+    assert user.state.model.alpha == (0.0001, 0.0001)
+    user.ctx.item_input_value(slider, 7.0)
+    assert user.state.model.alpha == (1.0, 1.0)
+    user.ctx.item_double_click(slider)
+    user.yield_()
+    assert user.state.model.alpha == type(user.state.model)().alpha
+
+
+@act
+def a_link_moves_components_together_or_apart(user):
+    user.item("//Material/alpha/###link")
+    user.ctx.item_input_value("//Material/alpha/##1", 0.5)
+    assert user.state.model.alpha[0] != user.state.model.alpha[1] == 0.5
+    user.item("//Material/alpha/###link")
+    assert user.state.model.alpha[0] == user.state.model.alpha[1]
+
+
+@act
+def a_choice_is_made(user):
+    before = user.pictures()
+    user.item("//Material/ndf/beckmann")
+    assert user.state.model.ndf == "beckmann"
+    assert not np.array_equal(before["lobe"], user.pictures()["lobe"])
+    assert reads(user.state.model) >= {"alpha", "eta", "smith"}
+    user.item("//Material/fresnel/##choice")
+    user.item("//$FOCUSED/one")
+    assert user.state.model.fresnel == "one"
+    assert "alpha" in reads(user.state.model) and not reads(user.state.model) & {"eta", "k"}
+    user.item("//Material/ndf/ggx")
+    assert "smith" not in reads(user.state.model), "GGX has one form of Smith's Lambda"
+
+
+def reads(model):
+    from brdf_explorer.ui.inspector import matters
+
+    return matters(type(model), tuple(model.choices().items()))
+
+
+@act
+def another_model_keeps_the_name_given_to_the_material(user):
+    user.window.state = replace(user.state, materials=(replace(user.state.material, name="mine"),))
+    user.item("//Material/diffuse")
+    assert user.state.model.name() == "diffuse" and user.state.material.name == "mine"
+    user.ctx.item_click("//Material/albedo/##swatch")
+    user.yield_()
+    user.ctx.popup_close_all()
+
+
+@act
+def materials_are_copied_renamed_and_removed(user):
+    user.item("//Material/###copy")
+    assert len(user.state.materials) == 2 and user.state.active == 1
+    assert user.state.materials[0].model == user.state.materials[1].model
+    user.item("//Material/$$1/###rename")
+    user.ctx.key_chars_replace_enter("rough one")
+    user.yield_()
+    assert user.state.material.name == "rough one"
+    user.item("//Material/$$0/##row")
+    assert user.state.active == 0
+    user.item("//Material/$$0/###remove")
+    assert [m.name for m in user.state.materials] == ["rough one"]
+
+
+@act
+def drags_on_pictures_move_light_camera_and_viewer(user):
+    start = user.state
+    user.ctx.item_drag_with_delta("//Sphere/picture", (100, -50))
+    light = user.state.light
+    assert abs(light.phi - np.degrees(np.arctan2(50, 100))) < 1 and 0 < light.theta < 90
+    assert len(user.window.history.past) == 1
+    user.ctx.item_drag_with_delta("//Lobe/picture", (50, 20))
+    assert user.state.views["lobe"].azimuth != start.views["lobe"].azimuth
+    assert user.state.views["lobe"].elevation > start.views["lobe"].elevation
+    user.ctx.mouse_wheel_y(2)
+    user.yield_()
+    assert user.state.views["lobe"].zoom > start.views["lobe"].zoom
+    user.ctx.item_drag_with_delta("//Polar slice/picture", (60, 40))
+    assert user.state.directions.theta_o != start.directions.theta_o
+    assert replace(user.state, light=start.light, views=start.views, directions=start.directions) == start
+
+
+@act
+def options_of_a_view_change_the_view_alone(user):
+    user.ctx.window_focus("//Sphere")
+    start = user.state
+    user.window.state = start.with_view("polar", curves="rgb")
+    user.yield_()
+    before = user.pictures()
+    user.window.state = start
+    after = user.pictures()
+    assert np.array_equal(before["lobe"], after["lobe"]) and not np.array_equal(before["polar"], after["polar"])
+
+
+@act
+def presets_of_materials_keep_the_scene_and_scenes_the_material(user):
+    start = user.state
+    user.ctx.window_focus("//Presets")
+    user.yield_()
+    user.item("//Presets/copper/##preset")
+    copper = user.state
+    assert copper.materials != start.materials
+    assert replace(copper, materials=start.materials) == start
+    user.ctx.mouse_move("//Presets/gold/##preset")
+    user.item("//Presets/gold/###add")
+    assert len(user.state.materials) == 2 and user.state.materials[0] == copper.material
+    user.item("//Presets/sky/##preset")
+    assert user.state.light != start.light and len(user.state.materials) == 2
+    user.ctx.item_input_value("//Presets/##search", "no such thing")
+    user.ctx.item_input_value("//Presets/##search", "")
+    user.ctx.window_focus("//Material")
+    user.yield_()
+
+
+@act
+def what_is_copied_is_pasted(user):
+    from imgui_bundle import imgui
+
+    from brdf_explorer.state import loads
+
+    start = user.state
+    user.keys("ctrl", "c")
+    assert loads(imgui.get_clipboard_text()) == start
+    user.ctx.item_input_value("//Material/alpha/##0", 0.7)
+    assert user.state != start
+    user.keys("ctrl", "v")
+    assert user.state == start
+
+
+@act
+def a_bad_preset_is_refused_in_words(user):
+    from imgui_bundle import imgui
+
+    start = user.state
+    imgui.set_clipboard_text("format = 1\nmaterial = 3\n")
+    user.keys("ctrl", "v")
+    assert user.state == start
+    assert "did you mean materials" in user.window.notice and user.window.notice_error
+    user.ctx.sleep_no_skip(5.0, 0.5)
+    assert user.window.notice, "an error stays until it is closed"
+    user.item("//##notice/###dismiss")
+    assert not user.window.notice
+    user.window.dropped.append(str(user.folder / "missing.toml"))
+    user.yield_()
+    assert "missing.toml" in user.window.notice and user.state == start
+
+
+@act
+def a_dropped_file_is_opened_and_saved_again(user):
+    from brdf_explorer.state import dumps, load
+
+    path = user.folder / "dropped.toml"
+    wanted = replace(user.state, directions=replace(user.state.directions, theta_o=61.0))
+    path.write_text(dumps(wanted))
+    user.window.dropped.append(str(path))
+    user.yield_()
+    assert user.state == wanted
+    user.window.state = user.state.with_model(replace(user.state.model, alpha=0.6))
+    user.keys("ctrl", "s")
+    assert load(path) == user.state
+
+
+@act
+def the_theme_is_switched(user):
+    below = slice(50, None)  # the toolbar shows what can be undone
+    before = user.screen()[below]
+    user.item("theme")
+    assert user.state.look.theme == "dark"
+    after = user.screen()[below]
+    assert np.median(before) > 200 > 80 > np.median(after)
+    user.item("theme")
+    assert np.array_equal(before, user.screen()[below])
+
+
+@act
+def a_shader_that_does_not_compile_keeps_the_picture(user):
+    from brdf_explorer.model import Invalid
+
+    before = user.pictures()
+
+    def broken(*sources):
+        raise Invalid("lib/fresnel.glsl:7: syntax error")
+
+    user.window.gpu.program = broken
+    user.keys("f5")
+    after = user.pictures()
+    assert all(np.array_equal(before[name], after[name]) for name in before)
+    assert all("lib/fresnel.glsl:7" in canvas.error for canvas in user.window.canvases.values())
+    del user.window.gpu.program
+    user.keys("f5")
+    user.pictures()
+    assert not any(canvas.error for canvas in user.window.canvases.values())
+
+
+@act
+def an_environment_that_is_not_there_is_told_on_the_sphere(user):
+    user.window.state = replace(user.state, light=replace(user.state.light, environment="file", file="/no/such.exr"))
+    user.pictures()
+    assert "/no/such.exr" in user.window.canvases["sphere"].error
+    assert not user.window.canvases["lobe"].error
+
+
+@act
+def a_finished_window_draws_nothing_anew(user):
+    user.pictures()
+    drawn = {name: canvas.picture for name, canvas in user.window.canvases.items()}
+    user.ctx.mouse_move("//Material/alpha/##0")
+    user.yield_(10)
+    assert all(canvas.picture is drawn[name] for name, canvas in user.window.canvases.items())
+
+
+# --- the window's process ------------------------------------------------------------------------------------------------
+
+
+class User:
+    """The hands of an act: the test engine's context, and pictures read on the thread that draws."""
+
+    def __init__(self, window, folder):
+        self.window, self.folder = window, folder
+        self.wanted, self.got = None, None
+        self.ctx = None
+
+    @property
+    def state(self):
+        return self.window.state
+
+    def yield_(self, frames=3):
+        self.ctx.yield_(frames)
+
+    def item(self, name):
+        """Click an item: a path, or a button of the toolbar."""
+        self.ctx.item_click(name if name.startswith("//") else f"**/###{name}")
+        self.yield_()
+
+    def keys(self, *names):
+        from imgui_bundle import imgui
+
+        self.ctx.mouse_move_to_pos((SIZE[0] / 2, 10))
+        modifiers = {"ctrl": imgui.Key.mod_ctrl, "shift": imgui.Key.mod_shift}
+        chord = 0
+        for name in names:
+            chord |= modifiers[name] if name in modifiers else getattr(imgui.Key, name)
+        self.ctx.key_press(chord)
+        self.yield_()
+
+    def pictures(self):
+        """The finished pictures by view, uint8 (H, W, 4)."""
+        self.yield_()
+        for _ in range(400):
+            if not any(canvas.busy for canvas in self.window.canvases.values()):
+                break
+            self.yield_(1)
+        return self.read("pictures")
+
+    def screen(self):
+        """The window's own pixels, uint8 (H, W, 3), its pictures finished and the mouse away from all widgets."""
+        self.ctx.mouse_move_to_pos((SIZE[0] / 2, 10))
+        self.window.notice = ""
+        self.pictures()
+        return self.read("screen")
+
+    def read(self, what):
+        self.wanted = what
+        for _ in range(20):
+            self.yield_(1)
+            if self.wanted is None:
+                return self.got
+        raise AssertionError("no frame was read back")
+
+    def deliver(self):
+        """Called between drawing and swapping."""
+        gpu = self.window.gpu
+        assert gpu.ctx.error == "GL_NO_ERROR"
+        if self.wanted == "pictures":
+            self.got = {name: gpu.pixels(canvas.shown) for name, canvas in self.window.canvases.items()}
+        elif self.wanted == "screen":
+            from imgui_bundle import imgui
+
+            width, height = map(int, imgui.get_io().display_size)
+            target = gpu.target("screen", (width, height), 4, "f1")
+            gpu.ctx.copy_framebuffer(target, gpu.ctx.screen)
+            self.got = gpu.pixels(target)[..., :3]
+            gpu.ctx.screen.use()
+        self.wanted = None
+
+
+def play(folder, scale):
+    """Run the window, play all acts at scale 1, save a screenshot; outcomes as JSON: name -> "" or what went wrong."""
+    from imgui_bundle.immapp import testing  # isort: skip, before glfw
+    import glfw
+    from PIL import Image
+
+    from brdf_explorer.state import State
+    from brdf_explorer.ui.history import History
+    from brdf_explorer.ui.window import Window
+
+    glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
+    glfw.init()
+    glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
+    start = State()
+    window = Window(start)
+    user = User(window, folder)
+    parameters = window.parameters(SIZE)
+    parameters.ini_disable = True
+    parameters.fps_idling.enable_idling = False
+    parameters.dpi_aware_params.dpi_window_size_factor = scale
+    parameters.callbacks.before_swap = user.deliver
+    outcomes = {}
+
+    def acts(ctx):
+        user.ctx = ctx
+        user.yield_(5)
+        Image.fromarray(user.screen()).save(folder / f"screen-{scale:g}.png")
+        for name, function in ACTS.items() if scale == 1 else ():
+            window.state, window.history, window.notice, window.memory = start, History(start), "", {}
+            user.yield_()
+            try:
+                function(user)
+                outcomes[name] = "the test engine failed, see its log" if ctx.is_error() else ""
+            except Exception:
+                outcomes[name] = traceback.format_exc()
+            if ctx.is_error():
+                break
+
+    try:
+        testing.run(None, acts, runner_params=parameters)
+    finally:
+        (folder / f"outcomes-{scale:g}.json").write_text(json.dumps(outcomes))
+
+
+@pytest.fixture(scope="module")
+def played(tmp_path_factory):
+    """played(scale) -> (folder, outcomes, log) of one run of the window."""
+    folder = tmp_path_factory.mktemp("window")
+    runs = {}
+
+    def run(scale):
+        if scale not in runs:
+            environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+            environment |= {"PYTHONPATH": str(ROOT), "HOME": str(folder)}
+            command = [sys.executable, __file__, str(folder), str(scale)]
+            done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300)
+            path = folder / f"outcomes-{scale:g}.json"
+            outcomes = json.loads(path.read_text()) if path.exists() else {}
+            runs[scale] = (folder, outcomes, f"exit {done.returncode}\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}")
+        return runs[scale]
+
+    return run
+
+
+@pytest.mark.parametrize("name", ACTS)
+def test_user(played, name):
+    _, outcomes, log = played(1.0)
+    assert name in outcomes, f"not reached\n{log}"
+    assert not outcomes[name], f"{outcomes[name]}\n{log}"
+
+
+def test_scale(played):
+    """The window at 200 % is the one at 100 %, twice as large: nothing is clipped or moved."""
+    from PIL import Image
+
+    one = Image.open(played(1.0)[0] / "screen-1.png")
+    two = Image.open(played(2.0)[0] / "screen-2.png")
+    assert two.size == (2 * one.width, 2 * one.height) == (2 * SIZE[0], 2 * SIZE[1])
+    small = [np.asarray(image.resize((320, 200), Image.Resampling.BOX), float) for image in (one, two)]
+    difference = np.abs(small[0] - small[1])
+    assert difference.mean() < 1.5 and np.quantile(difference, 0.99) < 30
+
+
+def test_nothing_is_left_in_the_working_directory(played):
+    folder, _, log = played(1.0)
+    assert not list(folder.glob("*.ini")), log
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(ROOT))
+    play(Path(sys.argv[1]), float(sys.argv[2]))
