@@ -5,7 +5,6 @@ flags, preset checks, the README's table and the tests are loops over `declared(
 """
 
 import difflib
-import math
 from dataclasses import dataclass, field, fields
 
 import numpy as np
@@ -75,6 +74,12 @@ def declared(cls, kind=(Param, Choice, Text)):
     return {name: d for name, d in found.items() if isinstance(d, kind)}
 
 
+def shown(value):
+    """A value as a message shows it: on one line, and not for ever."""
+    text = repr(value)
+    return text if len(text) <= 80 else f"{text[:77]}..."
+
+
 def nearest(name, names):
     """'; did you mean X?' for a name that is close to one of `names`, else the list of them."""
     close = difflib.get_close_matches(str(name), names, n=1, cutoff=0.5)
@@ -83,7 +88,7 @@ def nearest(name, names):
 
 def checked(where, name, declaration, value):
     """`value` as the declared type, or Invalid: "conductor: alpha = 3 is outside [0.0001, 1.0]"."""
-    what = f"{where}: {name} = {value!r}"
+    what = f"{where}: {name} = {shown(value)}"
     if isinstance(declaration, Text):
         if not isinstance(value, str):
             raise Invalid(f"{what} is not text")
@@ -95,14 +100,14 @@ def checked(where, name, declaration, value):
     size = declaration.size
     if isinstance(value, np.ndarray | np.number):
         value = value.tolist()
-        what = f"{where}: {name} = {value!r}"
+        what = f"{where}: {name} = {shown(value)}"
     values = list(value) if isinstance(value, tuple | list) else [value] * size
     if len(values) != size:
         raise Invalid(f"{what} has {len(values)} values; {size} expected")
     number = int if isinstance(declaration.default, int) else int | float
     if not all(isinstance(v, number) and not isinstance(v, bool) for v in values):
         raise Invalid(f"{what} is not {'a whole number' if number is int else 'a number'}" + " each" * (size > 1))
-    if not all(math.isfinite(v) and declaration.low <= v <= declaration.high for v in values):
+    if not all(declaration.low <= v <= declaration.high for v in values):  # NaN is not
         unit = f" {declaration.unit}" if declaration.unit else ""
         raise Invalid(f"{what} is outside [{declaration.low}, {declaration.high}]{unit}")
     if number is not int:

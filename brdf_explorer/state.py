@@ -2,7 +2,7 @@
 
 A preset holds any of the sections `materials`, `directions`, `light`, `look`, `views.NAME`; a section that is there holds
 every one of its parameters, and a section that is not is taken from the state the preset is opened over. So a material
-preset changes the material alone, a scene preset everything else. PNG and EXR pictures carry a preset inside.
+preset changes the material alone, a scene preset everything else. Pictures and tables carry a preset inside.
 """
 
 import os
@@ -14,11 +14,12 @@ from pathlib import Path
 
 import tomli_w
 
-from .model import Declared, Invalid, Model, choice, declared, nearest, param, text
+from .model import Declared, Invalid, Model, choice, declared, nearest, param, shown, text
 from .models import MODELS
 from .views import VIEWS
 
 FORMAT = 1
+CARRIERS = (".png", ".exr", ".svg", ".csv", ".npz")  # files that `export` writes with a preset inside
 LARGEST = 1_000_000  # bytes of preset text; the largest real one is a hundredth of this
 PACKAGE = Path(__file__).parent
 PRESETS = next(p for p in (PACKAGE / "presets", PACKAGE.parent / "presets") if p.is_dir())
@@ -118,16 +119,19 @@ def loads(text, where="preset", base=None):
     base = base or State()
     try:
         tree = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise Invalid(f"{where}: not a TOML preset: {error}") from None
+    except ValueError as error:  # TOMLDecodeError, or a number of thousands of digits
+        raise Invalid(f"{where}: not a TOML preset: {' '.join(str(error).split())}") from None
+    except RecursionError:
+        raise Invalid(f"{where}: not a TOML preset: nested too deeply") from None
     if "format" not in tree:
         raise Invalid(f"{where}: no key format; a preset begins with format = {FORMAT}")
-    if tree.pop("format") != FORMAT:
+    version = tree.pop("format")
+    if type(version) is not int or version != FORMAT:
         raise Invalid(f"{where}: format is not {FORMAT}, the one this version reads")
     known = ["active", "materials", "views", *SECTIONS]
     for key in tree:
         if key not in known:
-            raise Invalid(f"{where}: unknown key {key}{nearest(key, known)}")
+            raise Invalid(f"{where}: unknown key {shown(key)}{nearest(key, known)}")
     changes = {}
     for section, cls in SECTIONS.items():
         if section in tree:
@@ -147,7 +151,7 @@ def loads(text, where="preset", base=None):
         count = len(changes.get("materials", base.materials))
         active = tree["active"]
         if type(active) is not int or not 0 <= active < count:
-            raise Invalid(f"{where}: active = {active!r} is not a material's number, 0 to {count - 1}")
+            raise Invalid(f"{where}: active = {shown(active)} is not a material's number, 0 to {count - 1}")
         changes["active"] = active
     return replace(base, **changes)
 
@@ -160,7 +164,7 @@ def as_table(table, where):
 
 def known_key(key, known, where):
     if key not in known:
-        raise Invalid(f"{where}: unknown key {key}{nearest(key, list(known))}")
+        raise Invalid(f"{where}: unknown key {shown(key)}{nearest(key, list(known))}")
     return key
 
 
@@ -195,10 +199,14 @@ def presets():
 
 
 def load(source, base=None):
-    """The State of a preset: a name from `presets()`, or the path of a .toml, or of a .png or .exr that carries one."""
+    """The State of a preset: a name from `presets()`, or the path of a .toml or of a picture or table that carries one."""
     known = presets()
     path = known.get(str(source)) or Path(source)
-    if not path.exists():
+    try:
+        there = path.exists()
+    except OSError as error:
+        raise Invalid(f"{shown(str(source))}: {error.strerror}") from None
+    if not there:
         hint = nearest(source, list(known)) if not path.suffix and path.parent == Path(".") else ""
         raise Invalid(f"{source}: no such preset or file{hint}")
     state = loads(preset_text(path), str(source), base)
@@ -211,14 +219,18 @@ def preset_text(path):
     """The text of the preset in a file."""
     if path.is_dir():
         raise Invalid(f"{path}: a folder, not a preset")
-    try:
-        if path.suffix.lower() in (".png", ".exr"):
-            from .export import embedded
+    if path.suffix.lower() in CARRIERS:
+        from .export import embedded
 
-            return embedded(path)
-        if path.stat().st_size > LARGEST:
-            raise Invalid(f"{path}: {path.stat().st_size} bytes is too large for a preset (at most {LARGEST})")
-        return path.read_text(encoding="utf-8")
+        return embedded(path)
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST + 1)
+        if len(data) > LARGEST:
+            raise Invalid(f"{path}: too large for a preset, which has at most {LARGEST} bytes")
+        if not data.strip():
+            raise Invalid(f"{path}: empty, so not a preset")
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise Invalid(f"{path}: not UTF-8 text, so not a preset") from None
     except OSError as error:
@@ -228,27 +240,34 @@ def preset_text(path):
 def save(state, path):
     """Write the state as a preset; the file is whole, or as it was before."""
     with replacing(path) as temporary:
-        temporary.write_text(dumps(state), encoding="utf-8")
+        temporary.write_text(dumps(state), encoding="utf-8", newline="\n")
 
 
 @contextmanager
 def replacing(path):
     """A temporary path beside `path` that takes its place when the block ends well. Raises Invalid if it cannot."""
     path = Path(path)
-    if path.is_dir():
-        raise Invalid(f"{path}: a folder, not a file to write")
     temporary = None
     try:
-        handle, name = tempfile.mkstemp(suffix=path.suffix, prefix=f".{path.stem}-", dir=path.parent)
+        place = path.resolve()  # through a link: the file that it names is replaced, not the link
+        if place.is_dir():
+            raise Invalid(f"{path}: a folder, not a file to write")
+        if place.exists() and not place.is_file():
+            raise Invalid(f"{path}: a device, not a file to write")
+        if not place.parent.is_dir():
+            raise Invalid(f"{path}: cannot write: no folder {path.parent}")
+        handle, name = tempfile.mkstemp(suffix=place.suffix, prefix=".writing-", dir=place.parent)
         os.close(handle)
         temporary = Path(name)
         yield temporary
         mask = os.umask(0)
         os.umask(mask)
-        temporary.chmod(0o666 & ~mask)  # mkstemp makes files private
-        temporary.replace(path)
+        temporary.chmod(
+            place.stat().st_mode & 0o777 if place.exists() else 0o666 & ~mask
+        )  # mkstemp makes files private
+        temporary.replace(place)
     except OSError as error:
-        raise Invalid(f"{path}: cannot write: {error.strerror}") from None
+        raise Invalid(f"{path}: cannot write: {error.strerror or error}") from None
     finally:
         if temporary and temporary.exists():
             temporary.unlink()
