@@ -11,7 +11,6 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-import OpenEXR
 
 from .lib.common import PI, mix, normalize, split, vec
 from .lib.environment import environment_direction
@@ -339,6 +338,8 @@ def check_radiance(picture):
 
 def read_exr(path):
     """Channels R, G, B, or Y as grey; half or float, scan lines or tiles."""
+    import OpenEXR
+
     parts = _open_exr(path, header_only=True).parts
     if len(parts) != 1:
         raise Invalid(f"holds {len(parts)} parts; one with the channels R, G, B is expected")
@@ -367,6 +368,8 @@ def read_exr(path):
 
 
 def _open_exr(path, header_only=False):
+    import OpenEXR
+
     try:
         return OpenEXR.File(str(path), separate_channels=True, header_only=header_only)
     except (RuntimeError, ValueError, TypeError) as error:  # UnicodeDecodeError is a ValueError

@@ -35,6 +35,11 @@ def offscreen():
         gpu.ctx.release()
 
 
+def window():
+    """A Gpu on the OpenGL context of the window that is current."""
+    return Gpu(moderngl.create_context(require=330))
+
+
 def _standalone():
     attempts = []
     backends = [("EGL", {"backend": "egl"})] if sys.platform.startswith("linux") else [("OpenGL", {})]
@@ -174,7 +179,7 @@ class Gpu:
         if key not in self.arrays:
             self.arrays[key] = self.ctx.vertex_array(program, [], index_buffer=index)
         ctx = self.ctx
-        ctx.gc()
+        self.collect()
         ctx.enable_only((moderngl.BLEND if blend else 0) | (moderngl.DEPTH_TEST if depth else 0))
         if blend:
             ctx.blend_func = BLENDING[blend]
@@ -185,6 +190,13 @@ class Gpu:
         self.arrays[key].render(moderngl.TRIANGLES, vertices=-1 if index else vertices, instances=instances)
         if box is not None:
             target.scissor = None
+
+    def collect(self):
+        """Release what Python dropped; ctx.gc() would raise for what had been released by hand before."""
+        while self.ctx.objects:
+            dropped = self.ctx.objects.popleft()
+            if hasattr(dropped, "release"):
+                dropped.release()
 
     def pixels(self, target):
         """The target's colours as an array (H, W, C), first row at the top."""

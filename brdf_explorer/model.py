@@ -5,6 +5,7 @@ flags, preset checks, the README's table and the tests are loops over `declared(
 """
 
 import difflib
+import re
 from dataclasses import dataclass, field, fields
 
 import numpy as np
@@ -125,7 +126,8 @@ class Declared:
 
     @classmethod
     def name(cls):
-        return cls.__module__.rsplit(".", 1)[-1]
+        """The class's name in lower case: LambertSphere is lambert_sphere."""
+        return re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__).lower()
 
     def choices(self):
         return {name: getattr(self, name) for name in declared(self, Choice)}

@@ -11,13 +11,13 @@ and each metal has the colour that it shows beside a white sheet in the same day
 
 fit      per channel, the eta and k that have exactly the reference's F0 and, of these, the Fresnel curve nearest to the
          reference by least squares at 0, 1, ... 89 degrees. No passive mirror follows a channel above 1, a colour that
-         sRGB cannot show: there eta and k are the ends of their ranges, F0 = 0.9991, the nearest that the model has.
+         sRGB cannot show: there k is `average`'s and eta the least of its range, a mirror as near as a real metal's.
 lines    n and k at 645, 526 and 444 nm.
 average  n and k weighted as the reflectance is, then clipped to the ranges of the model.
 
 Errors are CIE Delta E 2000 against the reference at 0 and 80 degrees of incidence, and the largest at 0, 1, ... 89.
 The presets hold `fit`, rounded to 4 significant digits before its error is measured. Of every metal it has the least
-largest error: at most 0.21, but for gold's 1.3 from the red that sRGB lacks; `average` reaches 2.2, `lines` 4.3.
+largest error: at most 0.21, but for gold's 1.8 from the red that sRGB lacks; `average` reaches 2.2, `lines` 4.3.
 Measurements of one metal differ by more: the database's others of bulk gold from this one by 1.5 to 4.3 at 0 degrees.
 """
 
@@ -74,11 +74,11 @@ def curves(eta, k, weights=None):
     return F if weights is None else F @ weights
 
 
-def fit(target, transparent):
+def fit(target, transparent, k_average):
     """eta and k of the Fresnel curve that has target[0] at the normal and is nearest to `target` elsewhere."""
     (eta_low, eta_high), (_, k_high) = RANGES
     if target[0] >= F0(eta_low, k_high):
-        return eta_low, k_high
+        return eta_low, k_average
     root = np.sqrt(target[0])
     eta_least, eta_most = (1 - root) / (1 + root), (1 + root) / (1 - root)  # beyond, k^2 would be negative
     if transparent:
@@ -112,10 +112,12 @@ def main():
         n, k = spectrum(page, transparent)
         reference = curves(n, k, RGB)
         at_lines = np.searchsorted(WAVELENGTHS, LINES)
+        average = [np.clip(v @ RGB, low, high) for v, (low, high) in zip((n, k), RANGES, strict=True)]
+        fits = [fit(target, transparent, mean) for target, mean in zip(reference.T, average[1], strict=True)]
         methods = {
-            "fit": [rounded(v) for v in zip(*(fit(target, transparent) for target in reference.T), strict=True)],
+            "fit": [rounded(v) for v in zip(*fits, strict=True)],
             "lines": (n[at_lines], k[at_lines]),
-            "average": [np.clip(v @ RGB, low, high) for v, (low, high) in zip((n, k), RANGES, strict=True)],
+            "average": average,
         }
         eta, k = (v.tolist() for v in methods["fit"])
         print(f"\n{name}: {' '.join(page)}, F0 = {reference[0].round(4).tolist()}\neta = {eta}\nk = {k}")

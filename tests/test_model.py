@@ -87,7 +87,7 @@ def test_options_are_taken_and_others_are_refused_with_the_nearest(cls, name, de
 # --- what is refused -------------------------------------------------------------------------------------------------
 
 WRONG = [
-    ("alpha", 3, "test_model: alpha = 3 is outside [0.0001, 1.0]"),
+    ("alpha", 3, "example: alpha = 3 is outside [0.0001, 1.0]"),
     ("alpha", (0.5, 0.0), "alpha = (0.5, 0.0) is outside [0.0001, 1.0]"),
     ("alpha", (0.5,), "alpha = (0.5,) has 1 values; 2 expected"),
     ("alpha", [0.5, 0.5, 0.5], "has 3 values; 2 expected"),
@@ -110,7 +110,7 @@ WRONG = [
     ("count", np.float64(2), "is not a whole number"),
     ("count", True, "is not a whole number"),
     ("count", 9, "count = 9 is outside [1, 8]"),
-    ("ndf", "beckman", "test_model: ndf = 'beckman' is not a choice; did you mean beckmann?"),
+    ("ndf", "beckman", "example: ndf = 'beckman' is not a choice; did you mean beckmann?"),
     ("ndf", "phong", "ndf = 'phong' is not a choice; there are: ggx, beckmann"),
     ("ndf", None, "ndf = None is not a choice"),
     ("ndf", ["ggx"], "is not a choice"),

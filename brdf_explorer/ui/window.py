@@ -6,11 +6,10 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-import moderngl
 from imgui_bundle import hello_imgui, imgui  # before glfw: one libglfw is loaded, and it must be imgui's
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from ..gpu import Gpu
+from .. import gpu
 from ..model import Invalid
 from ..state import PRESETS, SECTIONS, dumps, load, loads, save
 from ..views import VIEWS
@@ -24,6 +23,7 @@ SIZE = (1280, 800)
 COLUMN = 348  # points of the inspector's column
 SAVING = 10.0  # most seconds that a picture to be saved may get better in
 LASTS = 3.0  # seconds that a notice stays, if it is no error
+FIRST = 10  # frames in which the system may still change the window's size
 IDLE = 0.2  # frames a second while nothing happens; input wakes the window at once
 C = imgui.Key
 
@@ -41,6 +41,7 @@ class Window:
         self.dropped = []
         self.gpu = None
         self.theme = None
+        self.fresh, self.width = True, 0  # whether no layout was saved, and the width that it was made for
 
     def run(self):
         """Show the window until it is closed. Raises Invalid where there is no screen."""
@@ -64,11 +65,12 @@ class Window:
         p.renderer_backend_options.open_gl_options.anti_aliasing_samples = 0
         p.fps_idling.fps_idle = IDLE
         p.fps_idling.time_active_after_last_event = 0.8
-        p.docking_params = self.docking(size)
+        self.fresh = not hello_imgui.has_ini_settings(p)
+        p.docking_params = self.docking()
         p.callbacks.load_additional_fonts = theme.load_fonts
         p.callbacks.setup_imgui_style = theme.set_sizes
         p.callbacks.post_init = self.begin
-        p.callbacks.pre_new_frame = self.set_theme
+        p.callbacks.pre_new_frame = self.before_frame
         p.callbacks.show_gui = self.frame
         p.callbacks.before_imgui_render = self.settle
         options = hello_imgui.EdgeToolbarOptions()
@@ -76,13 +78,13 @@ class Window:
         p.callbacks.add_edge_toolbar(hello_imgui.EdgeToolbarType.top, self.toolbar, options)
         return p
 
-    def docking(self, size):
+    def docking(self):
         """The inspector's column at the left, the sphere large, lobe and polar slice at the right."""
         split, direction = hello_imgui.DockingSplit, imgui.Dir
         layout = hello_imgui.DockingParams()
         layout.main_dock_space_node_flags = imgui.DockNodeFlags_.none
         layout.docking_splits = [
-            split("MainDockSpace", "Inspector", direction.left, COLUMN / size[0]),
+            split("MainDockSpace", "Inspector", direction.left, 0.25),  # see `restore_layout`
             split("MainDockSpace", "Right", direction.right, 0.46),
             split("Right", "Right foot", direction.down, 0.5),
         ]
@@ -102,14 +104,30 @@ class Window:
         import glfw
         from imgui_bundle.glfw_utils import glfw_window_hello_imgui
 
-        self.gpu = Gpu(moderngl.create_context(require=330))
+        self.gpu = gpu.window()
         self.glfw_window = glfw_window_hello_imgui()
         glfw.set_drop_callback(self.glfw_window, lambda _, paths: self.dropped.extend(paths))
 
-    def set_theme(self):
+    def before_frame(self):
+        """Colours, which the toolbar needs first, and at first a layout for the window's width."""
         if self.theme != self.state.look.theme:
             self.theme = self.state.look.theme
             theme.set_colors(self.theme)
+        if self.fresh and imgui.get_frame_count() < FIRST and self.width != (width := self.window_width()):
+            self.width = width  # on a dense screen the window grows after its first frame
+            self.restore_layout()
+
+    def window_width(self):
+        import glfw
+
+        return glfw.get_window_size(self.glfw_window)[0]
+
+    def restore_layout(self):
+        layout = hello_imgui.get_runner_params().docking_params
+        splits = layout.docking_splits
+        splits[0].ratio = min(points(COLUMN) / self.window_width(), 0.5)
+        layout.docking_splits = splits
+        layout.layout_reset = True
 
     # --- a frame ---------------------------------------------------------------------------------------------------------
 
@@ -260,7 +278,7 @@ class Window:
             if imgui.menu_item("Reload shaders", "F5", False)[0]:
                 self.reload()
             if imgui.menu_item("Restore the layout", "", False)[0]:
-                hello_imgui.get_runner_params().docking_params.layout_reset = True
+                self.restore_layout()
             imgui.end_popup()
 
     def shortcuts(self):

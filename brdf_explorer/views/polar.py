@@ -11,6 +11,7 @@ from .picture import PALETTES, Curves, Label, Picture, View, rgb
 from .table import table
 
 MARGIN = 44  # points around the half disc, for the angles
+FOOT = 46  # points below it, for values and a note
 
 
 @dataclass(frozen=True)
@@ -65,8 +66,9 @@ class Polar(View):
         slices = self.slices(gpu, state)
         peak = max(float(np.max(s[3])) for s in slices)
         top = 1.04 * peak if peak > 0 else 1.0
-        extent = max(min(width / 2 - MARGIN * scale, height - (MARGIN + 26) * scale), 1.0)
-        center = np.array([width / 2, 30 * scale])
+        extent = max(min(width / 2 - MARGIN * scale, height - (MARGIN + FOOT) * scale), 1.0)
+        spare = height - extent - (MARGIN + FOOT) * scale
+        center = np.array([width / 2, FOOT * scale + max(spare, 0.0) / 2])
         theta_o = np.radians(state.directions.theta_o)
         labels = []
 

@@ -15,7 +15,7 @@ void main() {
   color = vec4(0.0);
   if (coverage == 0.0) return;
   vec2 p = (gl_FragCoord.xy + jitter - center) / radius;
-  float edge = 1.0 - 0.5 / radius;  // a pixel on the rim shows the sphere half a pixel inside, where its cosine is not 0
+  float edge = max(1.0 - 0.5 / radius, 0.0);  // a rim's pixel shows the sphere half a pixel inside: its cosine is not 0
   float r = length(p);
   if (r > edge) {
     p *= edge / r;
