@@ -1,6 +1,7 @@
 """The real window, driven by imgui's test engine on glfw's null platform: no screen is needed.
 
-Each function of ACTS plays the user in one window, which runs in a process of its own: `python tests/test_ui.py FOLDER SCALE`.
+The window runs in a process of its own, `python tests/test_ui.py FOLDER acts` or `... FOLDER SCALE`. In the first each function
+of ACTS plays the user; the second only looks, at a size that fits the null platform's monitor, 1920x1080, up to twice as large.
 """
 
 import json
@@ -16,6 +17,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 SIZE = (1280, 800)
+SMALL = (960, 530)
 ACTS = {}
 
 
@@ -335,8 +337,9 @@ class User:
         self.wanted = None
 
 
-def play(folder, scale):
-    """Run the window, play all acts at scale 1, save a screenshot; outcomes as JSON: name -> "" or what went wrong."""
+def play(folder, what):
+    """Run the window, with "acts" or at a scale; outcomes.json: name -> "" or what went wrong, or a screenshot."""
+    from imgui_bundle import hello_imgui
     from imgui_bundle.immapp import testing  # isort: skip, before glfw
     import glfw
     from PIL import Image
@@ -351,7 +354,10 @@ def play(folder, scale):
     start = State()
     window = Window(start)
     user = User(window, folder)
-    parameters = window.parameters(SIZE)
+    scale = 1.0 if what == "acts" else float(what)
+    parameters = window.parameters(SIZE if what == "acts" else tuple(int(n * scale) for n in SMALL))
+    geometry = parameters.app_window_params.window_geometry
+    geometry.window_size_measure_mode = hello_imgui.WindowSizeMeasureMode.screen_coords  # its surface is never resized
     parameters.ini_disable = True
     parameters.fps_idling.enable_idling = False
     parameters.dpi_aware_params.dpi_window_size_factor = scale
@@ -361,8 +367,8 @@ def play(folder, scale):
     def acts(ctx):
         user.ctx = ctx
         user.yield_(5)
-        Image.fromarray(user.screen()).save(folder / f"screen-{scale:g}.png")
-        for name, function in ACTS.items() if scale == 1 else ():
+        user.pictures()
+        for name, function in ACTS.items() if what == "acts" else ():
             window.state, window.history, window.notice, window.memory = start, History(start), "", {}
             user.yield_()
             try:
@@ -376,32 +382,33 @@ def play(folder, scale):
     try:
         testing.run(None, acts, runner_params=parameters)
     finally:
-        (folder / f"outcomes-{scale:g}.json").write_text(json.dumps(outcomes))
+        (folder / "outcomes.json").write_text(json.dumps(outcomes))
+    Image.fromarray(hello_imgui.final_app_window_screenshot()).convert("RGB").save(folder / f"screen-{what}.png")
 
 
 @pytest.fixture(scope="module")
 def played(tmp_path_factory):
-    """played(scale) -> (folder, outcomes, log) of one run of the window."""
-    folder = tmp_path_factory.mktemp("window")
+    """played(what) -> (folder, log) of one run of the window."""
     runs = {}
 
-    def run(scale):
-        if scale not in runs:
+    def run(what):
+        if what not in runs:
+            folder = tmp_path_factory.mktemp("window")
             environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
             environment |= {"PYTHONPATH": str(ROOT), "HOME": str(folder)}
-            command = [sys.executable, __file__, str(folder), str(scale)]
+            command = [sys.executable, __file__, str(folder), what]
             done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300)
-            path = folder / f"outcomes-{scale:g}.json"
-            outcomes = json.loads(path.read_text()) if path.exists() else {}
-            runs[scale] = (folder, outcomes, f"exit {done.returncode}\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}")
-        return runs[scale]
+            runs[what] = (folder, f"exit {done.returncode}\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}")
+        return runs[what]
 
     return run
 
 
 @pytest.mark.parametrize("name", ACTS)
 def test_user(played, name):
-    _, outcomes, log = played(1.0)
+    folder, log = played("acts")
+    path = folder / "outcomes.json"
+    outcomes = json.loads(path.read_text()) if path.exists() else {}
     assert name in outcomes, f"not reached\n{log}"
     assert not outcomes[name], f"{outcomes[name]}\n{log}"
 
@@ -410,19 +417,23 @@ def test_scale(played):
     """The window at 200 % is the one at 100 %, twice as large: nothing is clipped or moved."""
     from PIL import Image
 
-    one = Image.open(played(1.0)[0] / "screen-1.png")
-    two = Image.open(played(2.0)[0] / "screen-2.png")
-    assert two.size == (2 * one.width, 2 * one.height) == (2 * SIZE[0], 2 * SIZE[1])
-    small = [np.asarray(image.resize((320, 200), Image.Resampling.BOX), float) for image in (one, two)]
+    screens = []
+    for what in ("1", "2"):
+        folder, log = played(what)
+        path = folder / f"screen-{what}.png"
+        assert path.exists(), log
+        screens.append(Image.open(path))
+    assert screens[0].size == SMALL and screens[1].size == tuple(2 * n for n in SMALL)
+    small = [np.asarray(image.resize((240, 132), Image.Resampling.BOX), float) for image in screens]
     difference = np.abs(small[0] - small[1])
     assert difference.mean() < 1.5 and np.quantile(difference, 0.99) < 30
 
 
 def test_nothing_is_left_in_the_working_directory(played):
-    folder, _, log = played(1.0)
-    assert not list(folder.glob("*.ini")), log
+    folder, log = played("1")
+    assert {p.name for p in folder.iterdir() if not p.name.startswith(".")} <= {"screen-1.png", "outcomes.json"}, log
 
 
 if __name__ == "__main__":
     sys.path.insert(0, str(ROOT))
-    play(Path(sys.argv[1]), float(sys.argv[2]))
+    play(Path(sys.argv[1]), sys.argv[2])

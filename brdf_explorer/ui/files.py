@@ -7,7 +7,7 @@ from pathlib import Path
 from imgui_bundle import imgui
 from imgui_bundle import portable_file_dialogs as pfd
 
-from .theme import points
+from .theme import points, vec
 
 PRESETS = ["Presets and pictures that carry one", "*.toml *.png *.exr", "All files", "*"]
 
@@ -38,6 +38,7 @@ class Dialog:
         name = f"{self.title}###path"
         if not self.opened:
             imgui.open_popup(name)
+        imgui.push_style_var(imgui.StyleVar_.window_rounding, points(8))
         imgui.set_next_window_pos(imgui.get_main_viewport().get_center(), imgui.Cond_.appearing, (0.5, 0.5))
         if imgui.begin_popup_modal(name, None, imgui.WindowFlags_.always_auto_resize)[0]:
             if not self.opened:
@@ -46,7 +47,12 @@ class Dialog:
             imgui.set_next_item_width(points(420))
             flags = imgui.InputTextFlags_.enter_returns_true
             entered, self.text = imgui.input_text_with_hint("##path", "path of the file", self.text, flags)
-            if imgui.button("Save" if self.saving else "Open", (points(90), 0)) or entered:
+            imgui.push_style_color(imgui.Col_.button, vec("focus"))
+            imgui.push_style_color(imgui.Col_.button_hovered, vec("focus", 0.85))
+            imgui.push_style_color(imgui.Col_.text, vec("paper"))
+            pressed = imgui.button("Save" if self.saving else "Open", (points(90), 0))
+            imgui.pop_style_color(3)
+            if pressed or entered:
                 answer = Path(self.text).expanduser() if self.text.strip() else ""
             imgui.same_line()
             if imgui.button("Cancel", (points(90), 0)) or imgui.is_key_pressed(imgui.Key.escape):
@@ -54,4 +60,5 @@ class Dialog:
             if answer is not None:
                 imgui.close_current_popup()
             imgui.end_popup()
+        imgui.pop_style_var()
         return answer

@@ -215,7 +215,7 @@ class Window:
         shown = imgui.begin(VIEWS[name].title, None, flags)[0]
         imgui.pop_style_color()
         imgui.pop_style_var()
-        if shown:
+        if shown and imgui.is_window_docked():  # not before the layout is made: the panel's size would be another
             self.state = self.canvases[name].panel(self.gpu, self.state, self.memory, self.export)
         imgui.end()
 
