@@ -1,0 +1,585 @@
+"""The command line. A preset's parameters are flags, made by loops over declarations once it is known which preset.
+
+Only click is imported here at first; all else is imported inside the command that needs it, so that none waits for another.
+"""
+
+import os
+import re
+import sys
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import click
+
+from . import __version__
+
+BAD_INPUT = 2
+NUMBER = re.compile(r"[+-]?(\.?\d|inf|nan)", re.IGNORECASE)  # what begins so is a value, not a flag
+
+
+class Group(click.Group):
+    """The commands; a first argument that is none of them is a preset to open. Errors are one line and an exit status."""
+
+    def main(self, args=None, prog_name="brdf-explorer", standalone_mode=True, **extra):
+        if not standalone_mode:
+            return super().main(args, prog_name, standalone_mode=False, **extra)
+        try:
+            status = super().main(args, prog_name, standalone_mode=False, **extra) or 0
+            sys.stdout.flush()
+        except click.ClickException as error:
+            status = complain(error.format_message())
+        except (click.Abort, KeyboardInterrupt):
+            status = 130
+        except BrokenPipeError:  # the reader, such as `head`, had enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            status = 141
+        except ValueError as error:
+            from .model import Invalid
+
+            if not isinstance(error, Invalid):
+                raise
+            status = complain(str(error))
+        sys.exit(status)
+
+    def parse_args(self, ctx, args):
+        own = {*self.commands, *(name for option in self.get_params(ctx) for name in option.opts)}
+        return super().parse_args(ctx, args if args and args[0] in own else ["open", *args])
+
+
+def complain(message):
+    """Say what is wrong, on one line."""
+    click.echo(f"brdf-explorer: {' '.join(message.split())}", err=True)
+    return BAD_INPUT
+
+
+class Flagged(click.Command):
+    """A command on a preset: PRESET, `--scene`, and a flag for each parameter of some sections of the preset.
+
+    sections: "material", "directions", "light", "look", and "view" for that of the option --view. The callback gets the State.
+    """
+
+    def __init__(self, *args, sections=("material",), **kwargs):
+        super().__init__(*args, **kwargs)
+        self.sections = sections
+
+    def parse_args(self, ctx, args):
+        view = after(args, "--view") or next((p.default for p in self.params if p.name == "view"), None)
+        state = loaded(self.preset(args), after(args, "--scene"))
+        ctx.meta["state"] = state
+        flags = ctx.meta["flags"] = flags_of(state, [view if s == "view" else s for s in self.sections])
+        rest, given = split(args, flags)
+        self.check_names(ctx, rest, flags)
+        super().parse_args(ctx, rest)
+        del ctx.params["scene"]
+        ctx.params["state"] = changed(state, flags, given)
+        return []
+
+    def preset(self, args):
+        """PRESET of arguments that are not parsed yet: it is the first, or follows options of the command itself."""
+        takes = {name: int(not p.is_flag) for p in self.params if isinstance(p, click.Option) for name in p.opts}
+        i = 0
+        while i < len(args) and args[i].startswith("-"):
+            i += 1 if "=" in args[i] else 1 + takes.get(args[i], len(args))
+        return args[i] if i < len(args) else None
+
+    def check_names(self, ctx, args, flags):
+        """Raise UsageError with the nearest right one for a flag that neither the command nor the preset has."""
+        from .model import nearest
+
+        own = [name for param in self.get_params(ctx) for name in param.opts if name.startswith("-")]
+        for arg in args:
+            name = arg.partition("=")[0]
+            if name.startswith("-") and not NUMBER.match(name) and name not in own and name[:2] not in own:
+                raise click.UsageError(f"no flag {name}{nearest(name, [*own, *flags])}")
+
+    def format_options(self, ctx, formatter):
+        super().format_options(ctx, formatter)
+        tables = {}
+        for name, flag in ctx.meta["flags"].items():
+            tables.setdefault(flag.section, []).append((f"{name} {flag.values}", flag.help))
+        state = ctx.meta["state"]
+        titles = {"material": f"Material {state.material.name}, model {state.model.name()}"}
+        titles |= {view: f"View {view}" for view in state.views}
+        for section, rows in tables.items():
+            with formatter.section(titles.get(section, section.capitalize())):
+                formatter.write_dl(rows)
+
+
+@dataclass(frozen=True)
+class Flag:
+    """A declared parameter of a section of the state, or of a view, as a flag."""
+
+    section: str
+    name: str
+    declaration: object
+    value: object
+
+    @property
+    def numbers(self):
+        return getattr(self.declaration, "size", 0)
+
+    @property
+    def values(self):
+        return " ".join("N" * self.numbers) or "TEXT"
+
+    @property
+    def help(self):
+        d = self.declaration
+        domain = (
+            f"{d.low:g} to {d.high:g}{d.unit and ' '}{d.unit}" if self.numbers else ", ".join(getattr(d, "options", ()))
+        )
+        value = " ".join(f"{v:g}" for v in self.value) if isinstance(self.value, tuple) else self.value
+        return f"{d.doc}{domain and f' ({domain})'}{f'; now {value}' if value != '' else ''}"
+
+    def parsed(self, words):
+        """The value that `words` of the command line mean; its range is checked where it is set."""
+        if not self.numbers:
+            return words[0]
+        numbers = [number(part) for word in words for part in word.split(",")]
+        if None in numbers:
+            raise click.UsageError(f"{self.name} = {' '.join(words)} is not a number")
+        return tuple(numbers) if len(numbers) > 1 else numbers[0]
+
+
+def number(word):
+    """The int or float that a word means, or None."""
+    for kind in (int, float):
+        try:
+            return kind(word)
+        except ValueError:
+            pass
+    return None
+
+
+def flags_of(state, sections):
+    """The Flags of sections and views, by name "--alpha". Where two share a name the later one's is "--light-alpha"."""
+    from .model import declared
+
+    flags = {}
+    for section in sections:
+        if section in state.views:
+            instance = state.views[section]
+        else:
+            instance = state.model if section == "material" else getattr(state, section, None)
+        for name, declaration in declared(instance).items() if instance else ():
+            words = name.replace("_", "-")
+            key = f"--{words}" if f"--{words}" not in flags else f"--{section}-{words}"
+            flags[key] = Flag(section, name, declaration, getattr(instance, name))
+    return flags
+
+
+def split(args, flags):
+    """`args` without the flags, and the words that each flag got: one, or for numbers all that follow it."""
+    rest, given = [], {}
+    args = list(args)
+    while args:
+        arg = args.pop(0)
+        name, equals, value = arg.partition("=")
+        if name not in flags:
+            rest.append(arg)
+            continue
+        words = [value] if equals else []
+        if not words and args and (NUMBER.match(args[0]) or not args[0].startswith("-")):
+            words.append(args.pop(0))
+        while flags[name].numbers and args and NUMBER.match(args[0]):
+            words.append(args.pop(0))
+        if not words:
+            raise click.UsageError(f"{name} needs a value: {flags[name].help}")
+        given[name] = words
+    return rest, given
+
+
+def changed(state, flags, given):
+    """The state with the given flags set. Raises Invalid for a value outside its range."""
+    from dataclasses import replace
+
+    changes = {}
+    for name, words in given.items():
+        flag = flags[name]
+        changes.setdefault(flag.section, {})[flag.name] = flag.parsed(words)
+    for section, values in changes.items():
+        if section == "light" and "file" in values:
+            values["file"] = os.path.abspath(values["file"])  # a state knows no working folder
+        if section == "material":
+            state = state.with_model(replace(state.model, **values))
+        elif section in state.views:
+            state = state.with_view(section, **values)
+        else:
+            state = replace(state, **{section: replace(getattr(state, section), **values)})
+    return state
+
+
+def after(args, name):
+    """The value of an option among arguments that are not parsed yet, or None."""
+    for i, arg in enumerate(args):
+        if arg.startswith(f"{name}="):
+            return arg.partition("=")[2]
+        if arg == name and i + 1 < len(args):
+            return args[i + 1]
+    return None
+
+
+def loaded(preset, scene=None):
+    """The State of a preset's name or path, or of a model's name with its defaults, over that of a scene."""
+    from dataclasses import replace
+
+    from .model import nearest
+    from .models import MODELS
+    from .state import Material, State, load, presets
+
+    base = load(scene) if scene else State()
+    if preset is None:
+        return base
+    if preset not in presets() and re.fullmatch(r"[\w-]*", preset) and not os.path.exists(preset):
+        if preset in MODELS:
+            return replace(base, materials=(Material(preset, MODELS[preset]()),), active=0)
+        known = [*presets(), *MODELS, *main.commands]
+        raise click.UsageError(
+            f"{preset or repr(preset)}: no such preset, model, command or file{nearest(preset, known)}"
+        )
+    return load(preset, base)
+
+
+# --- the commands ----------------------------------------------------------------------------------------------------
+
+
+@click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 120})
+@click.version_option(__version__, prog_name="brdf-explorer", message="%(prog)s %(version)s")
+def main():
+    """Explore reflection models.
+
+    With no COMMAND, `brdf-explorer [PRESET]` opens the window. A PRESET is a name that the command `presets` lists, the name
+    of a model, or the path of a preset file or of a picture or table that carries one. Its parameters are flags: `render
+    PRESET --help` lists them.
+    """
+
+
+class Size(click.ParamType):
+    name = "WxH"
+
+    def convert(self, value, param, ctx):
+        if match := re.fullmatch(r"([0-9]{1,9})x([0-9]{1,9})", value, re.IGNORECASE):
+            return int(match[1]), int(match[2])
+        self.fail(f"{value!r} is not a size in pixels such as 512x512", param, ctx)
+
+
+class Number(click.ParamType):
+    """A float in a range; click's own takes NaN."""
+
+    name = "N"
+
+    def __init__(self, low, high):
+        self.low = low
+        self.high = high
+
+    def convert(self, value, param, ctx):
+        found = number(str(value))
+        if found is None or not self.low <= found <= self.high:
+            self.fail(f"{value} is not a number from {self.low:g} to {self.high:g}", param, ctx)
+        return float(found)
+
+
+class Angles(click.ParamType):
+    name = "THETA,PHI"
+
+    def convert(self, value, param, ctx):
+        parts = [number(part) for part in value.split(",")]
+        if len(parts) != 2 or None in parts:
+            self.fail(f"{value!r} is not a direction in degrees such as 40,0", param, ctx)
+        theta, phi = parts
+        if not (0 <= theta <= 180 and -360 <= phi <= 360):
+            self.fail(f"{value!r} is no direction: theta is 0 to 180 degrees, phi -360 to 360", param, ctx)
+        return float(theta), float(phi)
+
+
+class ViewName(click.ParamType):
+    name = "VIEW"
+
+    def convert(self, value, param, ctx):
+        from .model import nearest
+        from .views import VIEWS
+
+        if value not in VIEWS:
+            self.fail(f"{value!r} is no view{nearest(value, list(VIEWS))}", param, ctx)
+        return value
+
+
+preset_argument = click.argument("preset")
+scene_option = click.option("--scene", metavar="PRESET", help="A preset under PRESET, for what PRESET does not hold.")
+output_option = click.option("-o", "--output", required=True, metavar="FILE", help="The file to write.")
+seconds_option = click.option("--time", "seconds", type=Number(0, 1e6), help="Most seconds to sample.")
+
+
+@main.command("open", cls=Flagged, sections=("material", "directions", "light", "look"))
+@click.argument("preset", required=False)
+@scene_option
+def open_(state, preset):
+    """Open the window, or with no display draw a gallery.
+
+    The gallery goes to the folder gallery/.
+    """
+    if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        click.echo("No display: neither DISPLAY nor WAYLAND_DISPLAY is set. Drawing a gallery into gallery/ instead.")
+        return write_gallery("gallery", [(preset, state)] if preset else None)
+    from .state import CARRIERS
+    from .ui import run
+
+    # where Save writes: not over a preset of the package, nor over a picture
+    mine = preset and os.path.isfile(preset) and not preset.lower().endswith(CARRIERS)
+    return run(state, preset if mine else None)
+
+
+@main.command(cls=Flagged, sections=("material", "directions", "light", "look", "view"))
+@preset_argument
+@scene_option
+@click.option("--view", type=ViewName(), default="sphere", show_default=True, help="What to draw: sphere, lobe, polar.")
+@click.option("--size", type=Size(), default="512x512", show_default=True, help="Pixels.")
+@click.option(
+    "--scale", type=Number(0.25, 16), default=1.0, show_default=True, help="Pixels a point of lines and text."
+)
+@seconds_option
+@output_option
+def render(state, preset, view, size, scale, seconds, output):
+    """Draw a view of PRESET into a file.
+
+    FILE is a .png or .exr picture; for polar also an .svg or .pdf drawing, or a .csv table of its curves.
+    """
+    from .export import save_view
+    from .gpu import offscreen
+
+    with offscreen() as gpu, progress() as show:
+        note = save_view(
+            gpu, state, view, output, size, scale, seconds, lambda picture: show(f"{view}: {picture.note}")
+        )
+    click.echo(f"{output}: {size[0]} x {size[1]}{note and f', {note}'}")
+
+
+@main.command("eval", cls=Flagged)
+@preset_argument
+@scene_option
+@click.option("--wo", type=Angles(), required=True, help="Direction to the viewer, degrees.")
+@click.option("--wi", type=Angles(), required=True, help="Direction to the light, degrees.")
+@click.option("--gpu", "shader", is_flag=True, help="f and pdf by the shader in float32, not in float64.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def eval_(state, preset, wo, wi, shader, as_json):
+    """Print f, pdf and albedo of PRESET.
+
+    The directional albedo is for wo, by quadrature in float64.
+    """
+    import json
+
+    import numpy as np
+
+    from .gpu import offscreen
+    from .measure import albedo
+    from .measure.grid import direction
+    from .state import values
+
+    model = state.model
+    directions = {name: direction(*np.radians(angles)) for name, angles in (("wo", wo), ("wi", wi))}
+    if shader:
+        with offscreen() as gpu:
+            f, pdf = gpu.f(model, **directions), gpu.pdf(model, **directions)
+    else:
+        f, pdf = model.f(**directions), model.pdf(**directions)
+    answer = {
+        "material": state.material.name,
+        "model": model.name(),
+        "parameters": values(model),
+        "precision": "float32" if shader else "float64",
+        "wo": {"theta": wo[0], "phi": wo[1], "direction": directions["wo"].tolist()},
+        "wi": {"theta": wi[0], "phi": wi[1], "direction": directions["wi"].tolist()},
+        "f": np.asarray(f).tolist(),
+        "pdf": float(pdf),
+        "albedo": albedo(model, directions["wo"], tolerance=1e-8, most=1024).tolist(),
+    }
+    if as_json:
+        click.echo(json.dumps(answer, indent=2, ensure_ascii=False, allow_nan=False))
+        return
+    digits = 9 if shader else 17
+    rows = {"f [1/sr]": answer["f"], "pdf [1/sr]": [answer["pdf"]], "albedo(wo)": answer["albedo"]}
+    click.echo(
+        f"{state.material.name} ({model.name()}), wo {wo[0]:g},{wo[1]:g}, wi {wi[0]:g},{wi[1]:g}, {answer['precision']}"
+    )
+    for name, numbers in rows.items():
+        click.echo(f"{name:<12}" + "  ".join(f"{n:.{digits}g}" for n in numbers))
+
+
+@main.command(cls=Flagged, sections=("material", "directions"))
+@preset_argument
+@scene_option
+@click.option("--rays", default=96, show_default=True, help="Rays about the mirror direction, an even number.")
+@click.option("--nodes", default=49, show_default=True, help="Directions a ray, an odd number.")
+@output_option
+def table(state, preset, rays, nodes, output):
+    """Write a table of f over directions to the light.
+
+    The directions are on a grid that follows the lobe; FILE is a .csv, .npz or .exr.
+    """
+    from .export import save_table
+    from .gpu import offscreen
+
+    with offscreen() as gpu:
+        save_table(gpu, state, output, rays, nodes)
+    click.echo(f"{output}: {rays} x {nodes} directions, theta_o = {state.directions.theta_o:g} deg")
+
+
+@main.command()
+@click.argument("presets", nargs=-1)
+@click.option("--scene", default="studio", show_default=True, metavar="PRESET", help="The light and the look.")
+@click.option("--size", type=Size(), default="480x360", show_default=True, help="Pixels of each picture.")
+@click.option("--time", "seconds", type=Number(0, 1e6), default=4.0, show_default=True, help="Most seconds a picture.")
+@click.option(
+    "-o", "--output", default="gallery", show_default=True, metavar="FOLDER", help="The folder to write into."
+)
+def gallery(presets, scene, size, seconds, output):
+    """Draw all materials in all views, and a page of them.
+
+    Or only the PRESETS that are given. The page is index.html.
+    """
+    return write_gallery(output, [(name, loaded(name, scene)) for name in presets] or None, scene, size, seconds)
+
+
+def write_gallery(folder, states=None, scene="studio", size=(480, 360), seconds=4.0):
+    from .gallery import materials, save_gallery
+    from .gpu import offscreen
+
+    states = states or materials(scene)
+    with offscreen() as gpu, progress() as show:
+        for i, n, what in save_gallery(gpu, states, folder, size, seconds):
+            show(f"{i} of {n}: {what}")
+    click.echo(f"{os.path.join(folder, 'index.html')}: {n} pictures")
+
+
+@main.command()
+@click.option("--markdown", is_flag=True, help="Print Markdown: README.md's table.")
+def models(markdown):
+    """List the models and their parameters."""
+    from .model import Choice, declared
+    from .models import MODELS
+
+    tables = {}
+    for name, cls in MODELS.items():
+        rows = tables[name] = []
+        for parameter, d in declared(cls).items():
+            if isinstance(d, Choice):
+                domain, default = ", ".join(d.options), d.default
+            else:
+                domain = f"{d.low:g} to {d.high:g}{d.unit and ' '}{d.unit}"
+                default = ", ".join(f"{v:g}" for v in (d.default if isinstance(d.default, tuple) else (d.default,)))
+            rows.append((parameter, domain, default, d.doc))
+    heads = ("parameter", "range or choices", "default", "meaning")
+    if markdown:
+        for name, rows in tables.items():
+            click.echo(f"**{name}**: {summary(MODELS[name])}\n\n| {' | '.join(heads)} |\n|{'---|' * len(heads)}")
+            for parameter, *others in rows:
+                click.echo(f"| `{parameter}` | {' | '.join(others)} |")
+            click.echo()
+        return
+    for name, rows in tables.items():
+        print_table(heads, rows, title=f"{name}: {summary(MODELS[name])}")
+
+
+def summary(cls):
+    """The first sentences of a docstring, on one line."""
+    return " ".join(cls.__doc__.split("\n\n")[0].split())
+
+
+@main.command()
+def presets():
+    """List the presets."""
+    from .model import Invalid
+    from .state import load, presets
+
+    rows = []
+    for name, path in presets().items():
+        kind = path.parent.name
+        try:
+            state = load(path)
+        except Invalid as error:
+            rows.append((name, kind, str(error)))
+            continue
+        if kind == "materials":
+            about = f"{state.material.name}: {state.model.name()}, {', '.join(state.model.choices().values())}"
+        else:
+            lights = [f"directional {state.light.irradiance:g}"] * (state.light.irradiance > 0)
+            lights += [state.light.environment] * (state.light.environment != "none")
+            about = f"{' and '.join(lights) or 'no'} light, tone curve {state.look.tonemap}"
+        rows.append((name, kind, about))
+    print_table(("name", "kind", "what it is"), rows)
+
+
+@main.command(cls=Flagged)
+@preset_argument
+@scene_option
+def check(state, preset):
+    """Print how well PRESET obeys the laws of physics.
+
+    A row a law with its measured error. Exit status 1 if one is broken.
+    """
+    from .gpu import offscreen
+    from .measure.laws import laws
+
+    rows, broken = [], 0
+    with offscreen() as gpu, progress() as show:
+        for law in laws(state.model, gpu):
+            show(law.name)
+            broken += not law.ok
+            mark = "ok" if law.ok else "broken"
+            limit = "" if law.limit is None else f"{law.limit:.3g}"
+            rows.append((law.name, f"{law.measured:.3g}", limit, mark, law.note))
+    print_table(("law", "measured", "limit", "", "note"), rows, title=state.material.name)
+    return int(broken > 0)
+
+
+@main.command()
+def bench():
+    """Print what pictures cost, and starting.
+
+    Ratios to bare work in the same run. Exit status 1 if one is over its limit.
+    """
+    from .bench import report
+
+    rows, over = [], 0
+    with progress() as show:
+        for figure in report():
+            show(figure.name)
+            over += not figure.ok
+            limit = "" if figure.limit is None else f"{figure.limit:g}"
+            mark = "" if figure.limit is None else "ok" if figure.ok else "over"
+            spread = f"{figure.low:.3g} to {figure.high:.3g}"
+            rows.append((figure.name, f"{figure.median:.3g} {figure.unit}", spread, limit, mark))
+    print_table(("what", "median", "quartiles", "limit", ""), rows)
+    return int(over > 0)
+
+
+def print_table(heads, rows, title=""):
+    """A table on stdout, as wide as the terminal; a pipe gets the whole of it."""
+    from rich.box import SIMPLE_HEAD
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    console = Console(width=None if sys.stdout.isatty() else 200)
+    styles = {"ok": "green", "broken": "bold red", "over": "bold red"}
+    view = Table(*heads, box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    for row in rows:
+        view.add_row(*(Text(cell, styles.get(cell, "")) for cell in row))
+    if title:
+        console.print(Text(title, "bold"), soft_wrap=True)
+    console.print(view)
+    console.print()
+
+
+@contextmanager
+def progress():
+    """A function that shows a line of progress on a terminal's stderr, and nothing elsewhere."""
+    from rich.console import Console
+    from rich.text import Text
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda text: None
+        return
+    with console.status("starting") as status:
+        yield lambda text: status.update(Text(text))
