@@ -150,19 +150,17 @@ def presets_of_materials_keep_the_scene_and_scenes_the_material(user):
     start = user.state
     user.ctx.window_focus("//Presets")
     user.yield_()
-    user.item("//Presets/copper/##preset")
+    user.item("//Presets/copper/###preset")
     copper = user.state
     assert copper.materials != start.materials
     assert replace(copper, materials=start.materials) == start
-    user.ctx.mouse_move("//Presets/gold/##preset")
+    user.ctx.mouse_move("//Presets/gold/###preset")
     user.item("//Presets/gold/###add")
     assert len(user.state.materials) == 2 and user.state.materials[0] == copper.material
-    user.item("//Presets/sky/##preset")
+    user.item("//Presets/sky/###preset")
     assert user.state.light != start.light and len(user.state.materials) == 2
     user.ctx.item_input_value("//Presets/##search", "no such thing")
     user.ctx.item_input_value("//Presets/##search", "")
-    user.ctx.window_focus("//Material")
-    user.yield_()
 
 
 @act
@@ -370,6 +368,7 @@ def play(folder, what):
         user.pictures()
         for name, function in ACTS.items() if what == "acts" else ():
             window.state, window.history, window.notice, window.memory = start, History(start), "", {}
+            ctx.window_focus("//Material")
             user.yield_()
             try:
                 function(user)

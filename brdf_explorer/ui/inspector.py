@@ -92,7 +92,7 @@ def materials(state, memory):
             if imgui.is_mouse_double_clicked(0):
                 memory["renaming"] = i
         a, b = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-        inside = imgui.is_mouse_hovering_rect(a, b) and imgui.is_window_hovered(imgui.HoveredFlags_.child_windows)
+        inside = over(a, b)
         drawing = imgui.get_window_draw_list()
         drawing.add_circle_filled((a.x + points(13), (a.y + b.y) / 2), points(4.5), u32(curves[i % len(curves)]))
         top = (a.y + b.y - imgui.get_text_line_height()) / 2
@@ -129,6 +129,12 @@ def bar(name, chosen, size):
     pressed = imgui.selectable(name, chosen, imgui.SelectableFlags_.allow_double_click, size)[0]
     imgui.pop_style_var()
     return pressed
+
+
+def over(a, b):
+    """Whether the mouse is over a rectangle of this panel, also while a button in it is held."""
+    flag = imgui.HoveredFlags_.allow_when_blocked_by_active_item
+    return imgui.is_window_hovered(flag) and imgui.is_mouse_hovering_rect(a, b)
 
 
 def rename(state, i, memory):
@@ -181,8 +187,11 @@ def lit(light, name):
     return name != "file" or light.environment == "file"
 
 
-def browse(state, memory, load):
-    """The presets of the package, with a search. load(name, add): open one over the state."""
+def browse(state, memory, load, thumbnail):
+    """The presets of the package, with a search. load(name, add): open one over the state.
+
+    thumbnail(name, side): texture of a material on a sphere, side in points, or None while there is none.
+    """
     imgui.set_next_item_width(imgui.get_content_region_avail().x)
     words = memory.get("search", "")
     _, memory["search"] = imgui.input_text_with_hint(
@@ -191,37 +200,74 @@ def browse(state, memory, load):
     wanted = memory["search"].lower().split()
     if "presets" not in memory:
         memory["presets"] = presets()
-    side = imgui.get_frame_height()
-    found = 0
-    for kind, title in (("materials", "Materials"), ("scenes", "Scenes")):
-        names = [n for n, path in memory["presets"].items() if path.parent.name == kind]
-        names = [n for n in names if all(w in n.lower() for w in wanted)]
-        if not names:
-            continue
-        found += len(names)
+    found = {"materials": [], "scenes": []}
+    for name, path in memory["presets"].items():
+        if all(word in name.replace("_", " ").lower() for word in wanted):
+            found[path.parent.name].append(name)
+    if found["scenes"]:
         widgets.gap(2)
-        widgets.heading(title)
-        for name in names:
-            imgui.push_id(name)
-            imgui.set_next_item_allow_overlap()
-            width = imgui.get_content_region_avail().x
-            start = imgui.get_cursor_pos()
-            pressed = bar("##preset", False, (width, side))
-            a, b = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-            inside = imgui.is_mouse_hovering_rect(a, b)
-            at = (a.x + points(10), (a.y + b.y - imgui.get_text_line_height()) / 2)
-            imgui.get_window_draw_list().add_text(at, u32("ink"), name.replace("-", " ").replace("_", " "))
-            if pressed:
-                state = load(name, False)
-            if kind == "materials" and inside:
-                imgui.set_cursor_pos((start.x + width - side, start.y))
-                if widgets.icon(icons.ICON_FA_PLUS, "add"):
-                    state = load(name, True)
-                widgets.hint("Add to the materials, to compare")
-            imgui.pop_id()
-    if not found:
+        widgets.heading("Scenes")
+    space = points(8)
+    half = (imgui.get_content_region_avail().x - space) / 2
+    for i, name in enumerate(found["scenes"]):
+        if i % 2:
+            imgui.same_line(0, space)
+        imgui.push_id(name)
+        pressed = imgui.button(f"{name.replace('_', ' ')}###preset", (half, 0))
+        imgui.pop_id()
+        if pressed:
+            state = load(name, False)
+    if found["materials"]:
         widgets.gap(2)
-        imgui.push_style_color(imgui.Col_.text, vec("muted"))
-        imgui.text_wrapped("No preset has these words in its name." if wanted else "No presets.")
-        imgui.pop_style_color()
+        widgets.heading("Materials")
+    columns = max(int((imgui.get_content_region_avail().x + space) // points(96 + 8)), 1)
+    side = (imgui.get_content_region_avail().x - (columns - 1) * space) / columns
+    for i, name in enumerate(found["materials"]):
+        if i % columns:
+            imgui.same_line(0, space)
+        if (add := tile(name, side, thumbnail)) is not None:
+            state = load(name, add)
+    if not any(found.values()):
+        widgets.gap(2)
+        imgui.text_disabled("No preset has these words in its name.")
     return state
+
+
+def tile(name, side, thumbnail):
+    """A material to click: its sphere over its name. False when pressed, True when it is to be added, else None."""
+    drawing = imgui.get_window_draw_list()
+    small = imgui.get_frame_height()
+    imgui.push_id(name)
+    start = imgui.get_cursor_pos()
+    imgui.set_next_item_allow_overlap()
+    whole = (side, side + points(SMALL + 9))
+    answer = False if imgui.invisible_button("###preset", whole) else None
+    a, b = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+    inside = over(a, b)
+    rounding = points(8)
+    drawing.add_rect_filled(a, (b.x, a.y + side), u32("backdrop"), rounding)
+    if imgui.is_rect_visible(a, b) and (texture := thumbnail(name, side)):
+        drawing.add_image_rounded(texture, a, (a.x + side, a.y + side), (0, 1), (1, 0), u32("#ffffff"), rounding)
+    if inside:
+        drawing.add_rect(a, (b.x, a.y + side), u32("focus"), rounding, points(1.5))
+    imgui.push_font(None, SMALL)
+    words = name.replace("_", " ")
+    width = imgui.calc_text_size(words).x
+    drawing.push_clip_rect(a, b, True)
+    x = a.x + max((side - width) / 2, 0)
+    drawing.add_text((x, a.y + side + points(3)), u32("ink" if inside else "muted"), words)
+    drawing.pop_clip_rect()
+    imgui.pop_font()
+    if inside:
+        if width > side:
+            widgets.hint(words)
+        imgui.set_cursor_pos((start.x + side - small - points(3), start.y + points(3)))
+        pad = imgui.get_cursor_screen_pos()
+        drawing.add_rect_filled(pad, (pad.x + small, pad.y + small), u32("raised", 0.85), points(6))
+        if widgets.icon(icons.ICON_FA_PLUS, "add"):
+            answer = True
+        widgets.hint("Add to the materials, to compare")
+    imgui.set_cursor_pos(start)
+    imgui.dummy(whole)
+    imgui.pop_id()
+    return answer

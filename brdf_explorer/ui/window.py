@@ -17,6 +17,7 @@ from . import files, inspector, theme, widgets
 from .canvas import Canvas
 from .history import History
 from .theme import points, vec
+from .thumbnails import Thumbnails
 
 TITLE = "BRDF Explorer"
 SIZE = (1280, 800)
@@ -39,7 +40,7 @@ class Window:
         self.notice, self.notice_error, self.notice_since = "", False, 0.0
         self.dialog = None
         self.dropped = []
-        self.gpu = None
+        self.gpu, self.thumbnails = None, None
         self.theme = None
         self.fresh, self.width = True, 0  # whether no layout was saved, and the width that it was made for
 
@@ -205,8 +206,16 @@ class Window:
 
     def presets(self):
         if begin("Presets"):
-            self.state = inspector.browse(self.state, self.memory, self.preset)
+            self.thumbnails = self.thumbnails or Thumbnails(self.gpu)
+            self.thumbnails.next_frame()
+            self.state = inspector.browse(self.state, self.memory, self.preset, self.thumbnail)
         imgui.end()
+
+    def thumbnail(self, name, side):
+        drawn = self.thumbnails.get(name, self.theme, int(side * imgui.get_io().display_framebuffer_scale.x))
+        if self.thumbnails.spent:
+            hello_imgui.request_refresh()
+        return drawn and imgui.ImTextureRef(drawn.color_attachments[0].glo)
 
     def view(self, name):
         imgui.push_style_var(imgui.StyleVar_.window_padding, (0, 0))
@@ -272,6 +281,7 @@ class Window:
         self.menu()
 
     def menu(self):
+        imgui.set_next_window_pos((imgui.get_window_width() - points(10), imgui.get_window_height()), 0, (1.0, 0.0))
         if imgui.begin_popup("more"):
             if imgui.menu_item("Save as ...", "Ctrl+Shift+S", False)[0]:
                 self.ask_save()
