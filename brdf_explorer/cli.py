@@ -30,9 +30,14 @@ class Group(click.Group):
             status = complain(error.format_message())
         except (click.Abort, KeyboardInterrupt):
             status = 130
-        except BrokenPipeError:  # the reader, such as `head`, had enough
+        except OSError as error:  # of stdout; other files are Invalid when they fail
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            status = 141
+            # a reader that had enough, such as `head`, is no error
+            status = (
+                141
+                if isinstance(error, BrokenPipeError)
+                else complain(f"{error.filename or 'output'}: {error.strerror}")
+            )
         except ValueError as error:
             from .model import Invalid
 
@@ -319,7 +324,9 @@ def open_(state, preset):
     The gallery goes to the folder gallery/.
     """
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        click.echo("No display: neither DISPLAY nor WAYLAND_DISPLAY is set. Drawing a gallery into gallery/ instead.")
+        click.echo(
+            "No display: neither DISPLAY nor WAYLAND_DISPLAY is set. Drawing a gallery into gallery/, which takes a minute or so."
+        )
         return write_gallery("gallery", [(preset, state)] if preset else None)
     from .state import CARRIERS
     from .ui import run
@@ -428,7 +435,7 @@ def table(state, preset, rays, nodes, output):
 @click.argument("presets", nargs=-1)
 @click.option("--scene", default="studio", show_default=True, metavar="PRESET", help="The light and the look.")
 @click.option("--size", type=Size(), default="480x360", show_default=True, help="Pixels of each picture.")
-@click.option("--time", "seconds", type=Number(0, 1e6), default=4.0, show_default=True, help="Most seconds a picture.")
+@click.option("--time", "seconds", type=Number(0, 1e6), default=3.0, show_default=True, help="Most seconds a picture.")
 @click.option(
     "-o", "--output", default="gallery", show_default=True, metavar="FOLDER", help="The folder to write into."
 )
@@ -440,7 +447,7 @@ def gallery(presets, scene, size, seconds, output):
     return write_gallery(output, [(name, loaded(name, scene)) for name in presets] or None, scene, size, seconds)
 
 
-def write_gallery(folder, states=None, scene="studio", size=(480, 360), seconds=4.0):
+def write_gallery(folder, states=None, scene="studio", size=(480, 360), seconds=3.0):
     from .gallery import materials, save_gallery
     from .gpu import offscreen
 

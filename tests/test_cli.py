@@ -513,6 +513,14 @@ def test_no_opengl_at_all_is_one_line_that_names_the_packages(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["start.py"]
 
 
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no full device")
+def test_output_that_cannot_be_printed_is_one_line():
+    with open("/dev/full", "w") as full:
+        done = process("models", stdout=full, stderr=subprocess.PIPE, capture_output=False)
+    assert done.returncode == 2
+    assert done.stderr == "brdf-explorer: output: No space left on device\n"
+
+
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 def test_a_reader_that_leaves_and_an_interrupt_are_quiet(tmp_path):
     with subprocess.Popen(
