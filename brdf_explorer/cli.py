@@ -69,12 +69,15 @@ class Flagged(click.Command):
 
     def parse_args(self, ctx, args):
         view = after(args, "--view") or next((p.default for p in self.params if p.name == "view"), None)
-        state = loaded(self.preset(args), after(args, "--scene"))
+        preset = self.preset(args)
+        state = loaded(preset, after(args, "--scene"))
         ctx.meta["state"] = state
         flags = ctx.meta["flags"] = flags_of(state, [view if s == "view" else s for s in self.sections])
         rest, given = split(args, flags)
         self.check_names(ctx, rest, flags)
         super().parse_args(ctx, rest)
+        if ctx.params["preset"] != preset:
+            raise click.UsageError(f"{ctx.params['preset']} must come before the flags of its parameters")
         del ctx.params["scene"]
         ctx.params["state"] = changed(state, flags, given)
         return []
