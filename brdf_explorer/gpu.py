@@ -22,16 +22,25 @@ BLENDING = {
     # the source's alpha is its share of a running mean; the target's stays
     "mean": (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE),
 }
+_open = []  # the Gpu of `offscreen`, while there is one
 ROW = 1024  # width of the tables that `evaluate` uploads
 
 
 @contextmanager
 def offscreen():
-    """A Gpu without a window: EGL, else OSMesa, else Invalid that names the packages to install."""
+    """A Gpu without a window: EGL, else OSMesa, else Invalid that names the packages to install.
+
+    Within another `offscreen` it is the same Gpu: two contexts in one thread would take each other's place.
+    """
+    if _open:
+        yield _open[0]
+        return
     gpu = Gpu(_standalone())
+    _open.append(gpu)
     try:
         yield gpu
     finally:
+        _open.clear()
         gpu.ctx.release()
 
 
