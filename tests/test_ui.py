@@ -212,6 +212,25 @@ def a_dropped_file_is_opened_and_saved_again(user):
 
 
 @act
+def a_picture_is_saved_with_its_preset(user):
+    from brdf_explorer.state import load
+
+    user.pictures()
+    for name, suffix in (("sphere", ".png"), ("polar", ".csv")):
+        path = user.folder / f"saved{suffix}"
+        user.window.export(name, (300, 200), 1.0)
+        user.yield_()
+        user.ctx.item_input_value("//$FOCUSED/##path", str(path))
+        user.yield_()
+        assert load(path) == user.state, user.window.notice
+        user.pictures()
+    user.window.export("lobe", (300, 200), 1.0)
+    user.yield_()
+    user.item("//$FOCUSED/Cancel")
+    assert user.window.dialog is None
+
+
+@act
 def the_theme_is_switched(user):
     below = slice(50, None)  # the toolbar shows what can be undone
     before = user.screen()[below]
@@ -394,7 +413,7 @@ def played(tmp_path_factory):
         if what not in runs:
             folder = tmp_path_factory.mktemp("window")
             environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
-            environment |= {"PYTHONPATH": str(ROOT), "HOME": str(folder)}
+            environment |= {"PYTHONPATH": str(ROOT), "HOME": str(folder), "PATH": ""}  # no system dialogs
             command = [sys.executable, __file__, str(folder), what]
             done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300)
             runs[what] = (folder, f"exit {done.returncode}\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}")
@@ -426,6 +445,15 @@ def test_scale(played):
     small = [np.asarray(image.resize((240, 132), Image.Resampling.BOX), float) for image in screens]
     difference = np.abs(small[0] - small[1])
     assert difference.mean() < 1.5 and np.quantile(difference, 0.99) < 30
+
+
+@pytest.mark.parametrize("display", ["", ":987654"])
+def test_no_screen_is_told_in_a_line(display):
+    environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    environment |= {"PYTHONPATH": str(ROOT)} | ({"DISPLAY": display} if display else {})
+    command = "from brdf_explorer.state import State; from brdf_explorer.ui import run; run(State())"
+    done = subprocess.run([sys.executable, "-c", command], env=environment, capture_output=True, text=True, timeout=60)
+    assert done.returncode and "Invalid: no " in done.stderr.splitlines()[-1]
 
 
 def test_nothing_is_left_in_the_working_directory(played):

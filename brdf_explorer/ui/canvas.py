@@ -85,7 +85,7 @@ class Canvas:
         imgui.set_next_item_allow_overlap()
         imgui.invisible_button("picture", ImVec2(*room))
         state = self.mouse(state, view, origin, pixel, size, scale)
-        if self.name == "sphere":
+        if self.name == "sphere" and shown:
             handle(state, view, origin, pixel, size)
         self.note(origin, room)
         imgui.set_cursor_pos(corner)
@@ -127,11 +127,15 @@ class Canvas:
     def note(self, origin, room):
         """The picture's note in the lower left corner, or what went wrong over the whole foot."""
         if self.error:
-            imgui.set_cursor_screen_pos((origin.x + points(10), origin.y + room.y - points(118)))
+            inset, pad = points(10), imgui.get_style().window_padding
+            width = room.x - 2 * inset
+            text = imgui.calc_text_size(self.error, False, width - 2 * pad.x).y
+            height = min(text + 2 * pad.y, room.y / 2)
+            imgui.set_cursor_screen_pos((origin.x + inset, origin.y + room.y - height - inset))
             imgui.push_style_color(imgui.Col_.child_bg, vec("error_back"))
             imgui.push_style_color(imgui.Col_.text, vec("error"))
             imgui.push_style_var(imgui.StyleVar_.child_rounding, points(8))
-            imgui.begin_child("error", (room.x - points(20), points(108)), imgui.ChildFlags_.always_use_window_padding)
+            imgui.begin_child("error", (width, height), imgui.ChildFlags_.always_use_window_padding)
             imgui.text_wrapped(self.error)
             imgui.end_child()
             imgui.pop_style_var()

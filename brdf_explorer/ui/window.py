@@ -21,6 +21,7 @@ from .thumbnails import Thumbnails
 
 TITLE = "BRDF Explorer"
 SIZE = (1280, 800)
+BAR = 2.8  # height of the toolbar, in heights of type
 COLUMN = 348  # points of the inspector's column
 SAVING = 10.0  # most seconds that a picture to be saved may get better in
 LASTS = 3.0  # seconds that a notice stays, if it is no error
@@ -45,10 +46,15 @@ class Window:
         self.fresh, self.width = True, 0  # whether no layout was saved, and the width that it was made for
 
     def run(self):
-        """Show the window until it is closed. Raises Invalid where there is no screen."""
+        """Show the window until it is closed. Raises Invalid where there is no screen or no OpenGL 3.3."""
         if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
             raise Invalid("no screen: neither DISPLAY nor WAYLAND_DISPLAY is set, so no window can open")
-        hello_imgui.run(self.parameters())
+        try:
+            hello_imgui.run(self.parameters())
+        except RuntimeError as error:
+            if self.gpu is not None:
+                raise
+            raise Invalid(f"no window with OpenGL 3.3 opens on this screen: {error}") from None
 
     def parameters(self, size=SIZE):
         """hello_imgui's description of this window."""
@@ -75,7 +81,7 @@ class Window:
         p.callbacks.show_gui = self.frame
         p.callbacks.before_imgui_render = self.settle
         options = hello_imgui.EdgeToolbarOptions()
-        options.size_em, options.window_padding_em = 2.8, (1.0, 0.5)
+        options.size_em, options.window_padding_em = BAR, (1.0, 0.5)
         p.callbacks.add_edge_toolbar(hello_imgui.EdgeToolbarType.top, self.toolbar, options)
         return p
 
@@ -165,15 +171,15 @@ class Window:
         self.notice, self.notice_error, self.notice_since = words, error, time.monotonic()
 
     def show_notice(self):
-        """The notice at the window's foot: an error stays until it is closed or something else is said."""
+        """The notice under the toolbar: an error stays until it is closed or something else is said."""
         if not self.notice:
             return
         if not self.notice_error and time.monotonic() - self.notice_since > LASTS:
             self.notice = ""
             return
         area = imgui.get_main_viewport()
-        at = (area.work_pos.x + area.work_size.x / 2, area.work_pos.y + area.work_size.y - points(20))
-        imgui.set_next_window_pos(at, imgui.Cond_.always, (0.5, 1.0))
+        at = (area.work_pos.x + area.work_size.x / 2, area.work_pos.y + imgui.get_font_size() * BAR + points(40))
+        imgui.set_next_window_pos(at, imgui.Cond_.always, (0.5, 0.0))
         F = imgui.WindowFlags_
         imgui.push_style_color(imgui.Col_.window_bg, vec("error_back" if self.notice_error else "raised"))
         imgui.push_style_color(imgui.Col_.text, vec("error" if self.notice_error else "ink"))
