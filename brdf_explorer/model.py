@@ -149,3 +149,7 @@ class Model(Declared):
     def slopes(self):
         """(alpha_x, alpha_y): scale of the half vectors' slopes over which f varies; grids and quadrature follow it."""
         return (1.0, 1.0)
+
+    def exceptions(self):
+        """Laws of measure/laws.py that this material is known to break, by name, each with the limit that it keeps instead."""
+        return {}

@@ -1,5 +1,6 @@
 """Numbers about any model: laws, albedo, chi-square tests, errors."""
 
-from .albedo import albedo
+from .albedo import albedo, albedo_with_error
+from .laws import laws
 
-__all__ = ["albedo"]
+__all__ = ["albedo", "albedo_with_error", "laws"]

@@ -28,25 +28,79 @@ class Grid:
 def grid(wo, alpha, t, psi):
     """The Grid of directions for a viewer wo (3,), slopes' scale alpha (2,), nodes t (n,) in [0, 1], psi (m,) in radians."""
     wo = np.asarray(wo, dtype=float)
+    psi, t = np.asarray(psi, dtype=float)[:, None], np.asarray(t, dtype=float)[None, :]
     ax, ay = alpha
-    cx, cy = ax * np.cos(psi)[:, None], ay * np.sin(psi)[:, None]  # slopes at rho = 1
+    cx, cy = ax * np.cos(psi), ay * np.sin(psi)  # slopes at rho = 1
     q = cx * cx + cy * cy
-    b = -(cx * wo[0] + cy * wo[1])  # wo . (unnormalised normal) = co + b rho
     co = wo[2]
-    # the horizon: co + 2 b rho - co q rho^2 = 0
-    root = np.sqrt(b * b + co * co * q)
-    rho_max = np.where(b > 0, (b + root) / (co * q), co / (root - np.minimum(b, 0)))
+    b, rho_max = _ray(wo, alpha, psi)
     scale = np.arcsinh(rho_max)
-    rho = np.sinh(t[None, :] * scale)
+    rho = np.sinh(t * scale)
     n2 = 1 + q * rho * rho
     along = co + b * rho  # wo . m before m is normalised
     z = (co + 2 * b * rho - co * q * rho * rho) / n2
-    z = np.where(t[None, :] == 1, 0.0, np.maximum(z, 0.0))
+    z = np.where(t == 1, 0.0, np.maximum(z, 0.0))
     wi = vec(-2 * along * cx * rho / n2 - wo[0], -2 * along * cy * rho / n2 - wo[1], z)
     # d omega_i = 4 (wo . wm) d omega_m, d omega_m = d slope / n2^(3/2), d slope = alpha_x alpha_y rho d rho d psi
-    d_rho = scale * np.cosh(t[None, :] * scale)
+    d_rho = scale * np.cosh(t * scale)
     density = 4 * along * ax * ay * rho * d_rho / n2**2
     return Grid(wi, density)
+
+
+def place(wo, alpha, wi):
+    """The t in [0, 1] and psi in [0, 2 pi] of directions wi (..., 3) above the horizon: the inverse of `grid`."""
+    x, y, z = split(np.asarray(wo, dtype=float) + wi)
+    sx, sy = -x / (z * alpha[0]), -y / (z * alpha[1])
+    psi = np.arctan2(sy, sx) % (2 * np.pi)
+    return np.minimum(np.arcsinh(np.hypot(sx, sy)) / np.arcsinh(_ray(wo, alpha, psi)[1]), 1.0), psi
+
+
+def _ray(wo, alpha, psi):
+    """Rise b of wo . (unnormalised normal) = wo.z + b rho along a ray, and rho_max, where its wi meets the horizon."""
+    cx, cy = alpha[0] * np.cos(psi), alpha[1] * np.sin(psi)
+    q = cx * cx + cy * cy
+    b = -(cx * wo[0] + cy * wo[1])
+    co = wo[2]
+    # the horizon: co + 2 b rho - co q rho^2 = 0
+    root = np.sqrt(b * b + co * co * q)
+    return b, np.where(b > 0, (b + root) / (co * q), co / (root - np.minimum(b, 0)))
+
+
+def spread(wo, alpha, fraction):
+    """psi of rays, and d psi / d fraction, for fractions (n,) of the turn: even spacing of these makes quadrature converge fast.
+
+    A ray's rho_max has branch points i epsilon from the two psi at which the ray is level, epsilon = cot theta_o if isotropic;
+    and its stretch has them i alpha_min / alpha_max from the psi of the longer axis. So fraction is the sum of two elliptic
+    integrals, of 1 / sqrt(cos^2 + epsilon^2 sin^2): rays lie logarithmically about those places, however near the points
+    are, and the map is analytic and periodic, as the trapezoidal rule needs to converge exponentially.
+    """
+    from scipy.special import ellipk, ellipkinc
+
+    fraction = np.asarray(fraction, dtype=float)
+    ax, ay = alpha
+    level = np.arctan2(ay * wo[1], ax * wo[0])  # a quarter turn from the level rays
+    width = wo[2] * np.hypot(ax * np.sin(level), ay * np.cos(level))
+    steep = np.hypot(ax * wo[0], ay * wo[1])
+    clusters = [
+        (level, max(width / max(steep, width), 1e-7)),
+        (0.0 if ax > ay else 0.5 * np.pi, min(ax, ay) / max(ax, ay)),
+    ]
+
+    def turn(psi):
+        return sum(ellipkinc(psi - c, 1 - e * e) - ellipkinc(-c, 1 - e * e) for c, e in clusters)
+
+    period = sum(4 * ellipk(1 - e * e) for _, e in clusters)
+    low, high = np.zeros(fraction.shape), np.full(fraction.shape, 2 * np.pi)
+    psi = 2 * np.pi * fraction
+    for _ in range(80):  # Newton's method kept inside a bracket
+        error = turn(psi) - fraction * period
+        slope = sum(1 / np.sqrt(np.cos(psi - c) ** 2 + (e * np.sin(psi - c)) ** 2) for c, e in clusters)
+        if np.all(np.abs(error) <= 1e-14 * period):
+            break
+        low, high = np.where(error < 0, psi, low), np.where(error < 0, high, psi)
+        step = psi - error / slope
+        psi = np.where((step >= low) & (step <= high), step, 0.5 * (low + high))
+    return psi, period / slope
 
 
 def plane_of_incidence(phi, alpha):

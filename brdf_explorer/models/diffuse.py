@@ -18,6 +18,14 @@ class Diffuse(Model):
     sigma: float = param(0.3, 0.0, 1.0, "standard deviation of the facets' angle of slope, for oren_nayar", unit="rad")
     diffuse: str = choice("lambert", ("lambert", "oren_nayar"), "law of reflection")
 
+    def exceptions(self):
+        # largest for a grazing viewer: A + B/2, the mean of the factors A at the normal and A + B between horizon and 45 degrees
+        normal, horizon, between = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.5**0.5, 0.0, 0.5**0.5]])
+        factor = slot("diffuse", self.diffuse).diffuse_factor
+        grazing = 0.5 * (factor(normal, normal, self.sigma) + factor(horizon, between, self.sigma))
+        albedo = float(max(self.albedo) * grazing)
+        return {"energy": albedo} if albedo > 1 else {}
+
     def f(self, wo, wi):
         return above_horizon(lambda o, i: INV_PI * self._value(o, i), wo, wi, 3)
 

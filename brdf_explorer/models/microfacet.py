@@ -33,6 +33,14 @@ class Microfacet(Model):
     def slopes(self):
         return self.alpha
 
+    def exceptions(self):
+        found = {}
+        if self.ndf == "beckmann" and self.smith == "rational":  # the fit's G1 errs by 3.1e-3
+            found |= {"weak white furnace": 3.2e-3, "energy": 1.0032}
+        if self.shadowing == "none":
+            found["energy"] = np.inf
+        return found
+
     def f(self, wo, wi):
         alpha = np.array(self.alpha)
         D = slot("ndf", self.ndf).D
