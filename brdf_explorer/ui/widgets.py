@@ -193,9 +193,10 @@ def bar(drawing, value, low, high, log, hot, typing, mark):
     drawing.add_rect_filled(a, b, color, rounding)
     drawing.pop_clip_rect()
     if hot or signed:
-        half = points(1.0 if hot else 0.75)
+        half = points(1.0)
+        top = a.y + half if hot else b.y - points(6)  # short, so as not to strike the number through
         drawing.add_rect_filled(
-            (x - half, a.y + half), (x + half, b.y - half), u32(mark or "focus", 1.0 if hot else 0.6), half
+            (x - half, top), (x + half, b.y - half), u32(mark or "focus", 1.0 if hot else 0.7), half
         )
 
 

@@ -337,7 +337,11 @@ class Window:
             self.state = loads(text, "clipboard", self.state)
             self.say("Pasted")
 
-        self.attempt(take, imgui.get_clipboard_text() or "")
+        text = imgui.get_clipboard_text()
+        if text:
+            self.attempt(take, text)
+        else:
+            self.say("The clipboard holds no text", error=True)
 
     def open(self, path):
         """A preset, a picture that carries one, or else an environment's picture."""
