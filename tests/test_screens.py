@@ -14,6 +14,7 @@ from brdf_explorer.state import Material, State, load
 SIZE = (320, 240)
 COMPARED = tuple(load(name).material for name in ("gold", "copper", "chalk"))
 SHARP = Material("Sharp", MODELS["microfacet"](alpha=0.001))
+NARROW = Material("Narrow", MODELS["microfacet"](alpha=0.03))  # thinner ones cover a sample of a pixel or not by a rounding
 BRUSHED = State((load("brushed_aluminium").material,))
 
 
@@ -35,7 +36,7 @@ SCREENS = {
     "sphere-furnace": ("sphere", state("white_microfacets", "white_furnace").with_view("sphere", samples=64)),
     "lobe-light": ("lobe", state("gold")),
     "lobe-dark-log": ("lobe", state("copper", theme="dark").with_view("lobe", radius="log", quantity="f_cos")),
-    "lobe-sharp": ("lobe", State((SHARP,)).with_view("lobe", zoom=2.0)),
+    "lobe-sharp": ("lobe", State((NARROW,)).with_view("lobe", zoom=2.0)),
     "lobe-anisotropic": ("lobe", at(BRUSHED, theta_o=65.0, phi_o=30.0).with_view("lobe", azimuth=20.0, elevation=50.0)),
     "polar-light": ("polar", state("gold").with_view("polar", curves="rgb")),
     "polar-dark-log": (
