@@ -38,7 +38,7 @@ def F_conductor(c, eta, k):
     a = np.where(square > 0, root, other)
     b = np.where(square > 0, other, root)
     sum = (c + a) ** 2 + b * b
-    difference = quotient(excess - k * k + b * b, c + a)
+    difference = np.where(square > 0, quotient(excess - k * k + b * b, c + a), a - c)
     Rs = quotient(difference * difference + b * b, sum)
     cb2 = c * c * b * b
     Rp = Rs * ((c * a - s2) ** 2 + cb2) / ((c * a + s2) ** 2 + cb2)

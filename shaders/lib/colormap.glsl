@@ -1,4 +1,4 @@
-// The colour map viridis (Smith and van der Walt 2015, CC0) as 17 of its colours joined linearly; sRGB. Off by at most 0.023.
+// The colour map viridis (Smith and van der Walt 2015, CC0) as 17 of its colours joined linearly; sRGB. Off by at most 0.0225.
 const vec3 VIRIDIS[17] = vec3[17](
     vec3(0.2670, 0.0049, 0.3294), vec3(0.2823, 0.0946, 0.4170), vec3(0.2789, 0.1749, 0.4830),
     vec3(0.2593, 0.2507, 0.5244), vec3(0.2302, 0.3213, 0.5455), vec3(0.2000, 0.3864, 0.5545),

@@ -3,7 +3,7 @@
 // Leaves out interference in films and polarisation of the incident light.
 
 // (eta cos theta_t)^2, negative at total internal reflection. Both forms are equal; each rounds less where it is taken: at
-// grazing angles and eta just below 1 the first would make F_dielectric err by a factor of 8.
+// grazing angles and eta just below 1 the first would make F_dielectric err by a factor of 20.
 float eta2_cos2_t(float c, float eta) {
   return eta < 0.7 ? eta * eta - (1.0 - c) * (1.0 + c) : (eta - 1.0) * (eta + 1.0) + c * c;
 }
@@ -31,7 +31,8 @@ float F_conductor(float c, float eta, float k) {
   float b = square > 0.0 ? other : root;
   float sum = (c + a) * (c + a) + b * b;
   if (sum == 0.0) return 1.0;  // eta = 1, k = 0, c = 0: the grazing limit
-  float difference = c + a > 0.0 ? (excess - k * k + b * b) / (c + a) : 0.0;  // a - c
+  // a - c; its quotient would make F 238 instead of 1 where light is all reflected: c = 1e-8, eta = 0.66, k = 2e-11
+  float difference = square > 0.0 ? (excess - k * k + b * b) / (c + a) : a - c;
   float Rs = (difference * difference + b * b) / sum;
   float cb2 = c * c * b * b;
   float Rp = Rs * ((c * a - s2) * (c * a - s2) + cb2) / ((c * a + s2) * (c * a + s2) + cb2);

@@ -9,7 +9,7 @@ vec2 leading(vec2 x) { return uintBitsToFloat(floatBitsToUint(x) & 0xffff0000u);
 
 // Density of microfacet area over normals, 1/sr; D cos integrates to 1. wm may have any length: a half vector's normalisation
 // would only add rounding. The exponential multiplies the relative error of slope^2 by slope^2, up to 87; so the slope is a
-// multiple of 1/8, whose square is exact, and a rest, from products in parts: 2e-5 -> 7e-7.
+// multiple of 1/8, whose square is exact, and a rest, from products in parts: 2.4e-5 -> 1e-6.
 float D(vec3 wm, vec2 alpha) {
   if (wm.z <= 0.0) return 0.0;
   vec2 run = alpha * wm.z;
