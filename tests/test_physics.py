@@ -382,7 +382,7 @@ def test_stable_forms_in_float32(gpu):
     exact = np.sqrt(q.astype(float) * (2 - q.astype(float)))
     stated(np.sqrt(q * (two - q)), exact, 1.1e-7)
     z = one - q
-    assert np.max((np.abs(np.sqrt(one - z * z) / exact - 1) * q)[q < 0.1]) == pytest.approx(4e-8, rel=0.2)
+    assert np.max((np.abs(np.sqrt(one - z * z) / exact - 1) * q)[q < 0.1]) == pytest.approx(2.5e-8, rel=0.1)
     # Beckmann's Lambda
     a = np.float32(np.linspace(2, 6, 100_000))
     naive = (np.exp(-a * a) / (a * np.float32(np.sqrt(PI))) - (one - erf(a))) / two

@@ -17,7 +17,7 @@ float visible_area(vec3 wo, vec2 alpha) {
 }
 
 // A normal distributed as D_visible = D (wo . wm)+ / visible_area. Dupuy and Benyoub 2023, "Sampling Visible GGX Normals
-// with Spherical Caps", Listing 3. q = 1 - z of the cap's point: sqrt(q (2 - q)) errs by 1.1e-7 where sqrt(1 - z z) does by 4e-8 / q.
+// with Spherical Caps", Listing 3. q = 1 - z of the cap's point: sqrt(q (2 - q)) errs by 1.1e-7 where sqrt(1 - z z) does by 2.5e-8 / q.
 vec3 sample_D_visible(vec3 wo, vec2 u, vec2 alpha) {
   vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
   float phi = TWO_PI * u.x;
