@@ -15,7 +15,7 @@ float F_dielectric(float c, float eta) {
   float square = eta2_cos2_t(c, eta);
   if (square <= 0.0) return 1.0;
   float t = sqrt(square);
-  float rs = excess / ((c + t) * (c + t));  // (t - c) / (t + c) without its cancellation: 1.7e-4 -> 7e-7 at eta = 1.001
+  float rs = excess / ((c + t) * (c + t));  // (t - c) / (t + c) without its cancellation: 2e-4 -> 8e-7 at eta = 1.001
   float rp = rs * (c * t - s2) / (c * t + s2);
   return 0.5 * (rs * rs + rp * rp);
 }
