@@ -22,6 +22,26 @@ with offscreen() as gpu:
     state = load("gold")
     gpu.pixels(develop(gpu, next(state.views["sphere"].pictures(gpu, state, (512, 512))), state.look))
 """
+# the window on what it opens on, without a screen, up to its first frame or the one that shows all pictures
+OPENED = """
+from imgui_bundle import hello_imgui
+import glfw
+glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
+glfw.init()
+glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
+from brdf_explorer.state import load
+from brdf_explorer.ui.window import Window
+window = Window(load("gold", load("studio")))
+parameters = window.parameters()
+parameters.ini_disable = True
+
+def swapped():
+    window.gpu.ctx.finish()
+    parameters.app_shall_exit = {until}
+
+parameters.callbacks.after_swap = swapped
+hello_imgui.run(parameters)
+"""
 
 
 @dataclass(frozen=True)
@@ -121,6 +141,8 @@ def starting(processes):
             "package": run("import numpy, brdf_explorer.state"),
             "bare": run(BARE.format(backend=backend)),
             "picture": run(PICTURE),
+            "frame": run(OPENED.format(until="True")),
+            "pictures": run(OPENED.format(until="all(canvas.shown for canvas in window.canvases.values())")),
         },
         processes,
     )
@@ -128,3 +150,5 @@ def starting(processes):
     yield figure("imports of numpy, moderngl, imgui_bundle and a context", times["bare"], "s")
     yield figure("first picture from a cold process", times["picture"], "s")
     yield figure("first picture / those imports and a context", times["picture"] / times["bare"], limit=2)
+    yield figure("window's first frame / those imports and a context", times["frame"] / times["bare"], limit=2)
+    yield figure("window's first pictures / those imports and a context", times["pictures"] / times["bare"])

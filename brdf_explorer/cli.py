@@ -235,9 +235,9 @@ def loaded(preset, scene=None):
     from .models import MODELS
     from .state import Material, State, load, presets
 
+    if preset is None:  # what the window opens on
+        preset, scene = "gold", scene or "studio"
     base = load(scene) if scene else State()
-    if preset is None:
-        return base
     if preset not in presets() and re.fullmatch(r"[\w-]*", preset) and not os.path.exists(preset):
         if preset in MODELS:
             return replace(base, materials=(Material(preset, MODELS[preset]()),), active=0)

@@ -242,7 +242,7 @@ def disc_cover(w, centre, radius, parts=16):
 
 def studio():
     """Soft boxes in a dark neutral room, for shiny things. A white Lambert facet at its brightest has radiance 1."""
-    height, width = 512, 1024
+    height, width = 256, 512
     w = directions(height, width)
     x, y, z = split(w)
     # The room: a backdrop that a lamp lights from below, brighter behind the subject, over a darker floor.
@@ -254,10 +254,10 @@ def studio():
         radiance = mix(radiance, strength * light[..., None] * np.array(colour), cover[..., None])
     solid_angle = texel_solid_angle(height, width)[:, None]
     facets = normalize(directions(16, 32).reshape(-1, 3))
-    coarse = radiance.reshape(64, 8, 128, 8, 3)  # the boxes are far larger than 3 degrees
-    weights = (solid_angle * np.ones(width)).reshape(64, 8, 128, 8, 1)
+    coarse = radiance.reshape(32, 8, 64, 8, 3)  # the boxes are far larger than 6 degrees
+    weights = (solid_angle * np.ones(width)).reshape(32, 8, 64, 8, 1)
     flux = np.sum(coarse * weights, axis=(1, 3)).reshape(-1, 3) @ LUMINANCE
-    cosines = np.maximum(facets @ directions(64, 128).reshape(-1, 3).T, 0)
+    cosines = np.maximum(facets @ directions(32, 64).reshape(-1, 3).T, 0)
     return (radiance * (PI / np.max(cosines @ flux))).astype(np.float32)
 
 

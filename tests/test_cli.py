@@ -6,7 +6,6 @@ import re
 import signal
 import subprocess
 import sys
-from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -31,13 +30,7 @@ SECTIONS = ("material", "directions", "light", "look")
 
 @pytest.fixture
 def run(gpu, tmp_path, monkeypatch):
-    """Runs a command in an empty folder, on the tests' own GL context: two of them in one thread are too many."""
-
-    @contextmanager
-    def offscreen():
-        yield gpu
-
-    monkeypatch.setattr("brdf_explorer.gpu.offscreen", offscreen)
+    """Runs a command in an empty folder, on the tests' own GL context."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
@@ -276,7 +269,7 @@ def test_with_a_display_the_window_opens_on_the_preset(run, monkeypatch):
     run("render", "gold", "--size", "9x9", "-o", "x.png")
     assert run("x.png").exit_code == run("--alpha", "0.5").exit_code == 0
     assert [path for _, path in opened] == [None, None, "mine.toml", None, None]
-    assert opened[0][0] == State()
+    assert opened[0][0] == load("gold", load("studio"))
     assert opened[1][0].look.exposure == 2 and opened[1][0].material == load("gold").material
     assert opened[4][0].model.alpha == (0.5, 0.5)
 
@@ -561,3 +554,9 @@ def test_help_and_version_need_neither_numpy_nor_opengl():
     environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[1])}
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=60)
     assert not {"numpy", "moderngl", "PIL", "OpenEXR", "rich", "imgui_bundle"} & set(done.stdout.split())
+
+
+def test_readme_holds_the_models_as_they_are(fine):
+    readme = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
+    table = readme.split("<!-- models: begin -->")[1].split("<!-- models: end -->")[0]
+    assert table.strip() == fine("models", "--markdown").strip()

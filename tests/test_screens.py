@@ -14,7 +14,9 @@ from brdf_explorer.state import Material, State, load
 SIZE = (320, 240)
 COMPARED = tuple(load(name).material for name in ("gold", "copper", "chalk"))
 SHARP = Material("Sharp", MODELS["microfacet"](alpha=0.001))
-NARROW = Material("Narrow", MODELS["microfacet"](alpha=0.03))  # thinner ones cover a sample of a pixel or not by a rounding
+NARROW = Material(
+    "Narrow", MODELS["microfacet"](alpha=0.03)
+)  # thinner ones cover a sample of a pixel or not by a rounding
 BRUSHED = State((load("brushed_aluminium").material,))
 
 

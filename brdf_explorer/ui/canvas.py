@@ -119,7 +119,7 @@ class Canvas:
             if self.name == "lobe":
                 return gestures.orbit(state, view, delta, scale)
             if self.name == "polar":
-                return gestures.viewer(state, at, size, scale)
+                return gestures.viewer(state, view, at, size, scale)
         if hovered and io.mouse_wheel and self.name == "lobe":
             return gestures.zoom(state, view, io.mouse_wheel)
         return state

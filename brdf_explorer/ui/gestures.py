@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 
 from ..model import declared
-from ..views.polar import FOOT, MARGIN
 
 ORBIT = 0.4  # degrees that a point of drag turns a camera or an environment
 
@@ -44,17 +43,11 @@ def zoom(state, view, wheel):
     return state.with_view("lobe", zoom=min(max(round(view.zoom * 1.1**wheel, 3), limits.low), limits.high))
 
 
-def viewer(state, at, size, scale):
+def viewer(state, view, at, size, scale):
     """The viewer's polar angle under the mouse."""
-    x, y = at[0] - size[0] / 2, size[1] - polar_foot(size, scale) - at[1]
+    (left, foot), _ = view.disc(size, scale)
+    x, y = at[0] - left, size[1] - foot - at[1]
     theta = math.degrees(math.atan2(x, max(y, 0.0)))
     limits = declared(state.directions)["theta_o"]
     theta = min(max(round(theta, 1), limits.low), limits.high)
     return replace(state, directions=replace(state.directions, theta_o=theta))
-
-
-def polar_foot(size, scale):
-    """Height of the centre of the polar slice's half disc over the picture's lower edge."""
-    around = (MARGIN + FOOT) * scale
-    extent = max(min(size[0] / 2 - MARGIN * scale, size[1] - around), 1.0)
-    return FOOT * scale + max(size[1] - extent - around, 0.0) / 2

@@ -32,6 +32,12 @@ class Polar(View):
         materials = state.materials if self.curves == "materials" else (state.material,)
         return (self, materials, state.directions, state.look.theme)
 
+    def disc(self, size, scale=1.0):
+        """Centre (2,) of the half disc in a picture of that size, pixels from the bottom left, and its radius."""
+        around = (MARGIN + FOOT) * scale
+        extent = max(min(size[0] / 2 - MARGIN * scale, size[1] - around), 1.0)
+        return np.array([size[0] / 2, FOOT * scale + max(size[1] - extent - around, 0.0) / 2]), extent
+
     def slices(self, gpu, state):
         """[(name, colour role or number, theta (n,), float32 values (n,), float64 values (n,))] of each curve."""
         materials = state.materials if self.curves == "materials" else (state.material,)
@@ -66,9 +72,7 @@ class Polar(View):
         slices = self.slices(gpu, state)
         peak = max(float(np.max(s[3])) for s in slices)
         top = 1.04 * peak if peak > 0 else 1.0
-        extent = max(min(width / 2 - MARGIN * scale, height - (MARGIN + FOOT) * scale), 1.0)
-        spare = height - extent - (MARGIN + FOOT) * scale
-        center = np.array([width / 2, FOOT * scale + max(spare, 0.0) / 2])
+        center, extent = self.disc(size, scale)
         theta_o = np.radians(state.directions.theta_o)
         labels = []
 
