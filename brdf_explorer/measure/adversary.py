@@ -17,9 +17,8 @@ def adversarial(rng, n):
     related = wo * flip[kind % 3]
     near = _unit(related + rng.normal(size=(n, 3)) * 10.0 ** rng.uniform(-8, -1, (n, 1)))
     wi = np.where((kind < 3)[:, None], related, np.where((kind < 6)[:, None], near, wi))
-    opposite = kind == 6
-    r = np.hypot(wi[:, 0], wi[:, 1]) / np.maximum(np.hypot(wo[:, 0], wo[:, 1]), 1e-30)
-    wi[opposite] = np.column_stack([-wo[:, 0] * r, -wo[:, 1] * r, wi[:, 2]])[opposite]
+    behind = _direction(wi[:, 2], np.arctan2(-wo[:, 1], -wo[:, 0]))
+    wi = np.where((kind == 6)[:, None], behind, wi)
     wo, wi = (w * (1 + 1e-6 * rng.choice((0, 0, -1, 1), (n, 1))) for w in (wo, wi))
     ends = np.array([0.0, 2.0**-24, 0.5, 1 - 2.0**-24])
     u = np.where(rng.random((n, 2)) < 0.3, rng.choice(ends, (n, 2)), rng.integers(0, 2**24, (n, 2)) * 2.0**-24)

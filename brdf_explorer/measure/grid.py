@@ -81,20 +81,21 @@ def spread(wo, alpha, fraction):
     level = np.arctan2(ay * wo[1], ax * wo[0])  # a quarter turn from the level rays
     width = wo[2] * np.hypot(ax * np.sin(level), ay * np.cos(level))
     steep = np.hypot(ax * wo[0], ay * wo[1])
+    # (a quarter turn from the cluster, 1 - epsilon^2)
     clusters = [
-        (level, max(width / max(steep, width), 1e-7)),
-        (0.0 if ax > ay else 0.5 * np.pi, min(ax, ay) / max(ax, ay)),
+        (level, 1 - max(width / max(steep, width), 1e-7) ** 2),
+        (0.0 if ax > ay else 0.5 * np.pi, 1 - (min(ax, ay) / max(ax, ay)) ** 2),
     ]
 
     def turn(psi):
-        return sum(ellipkinc(psi - c, 1 - e * e) - ellipkinc(-c, 1 - e * e) for c, e in clusters)
+        return sum(ellipkinc(psi - c, m) - ellipkinc(-c, m) for c, m in clusters)
 
-    period = sum(4 * ellipk(1 - e * e) for _, e in clusters)
+    period = sum(4 * ellipk(m) for _, m in clusters)
     low, high = np.zeros(fraction.shape), np.full(fraction.shape, 2 * np.pi)
     psi = 2 * np.pi * fraction
     for _ in range(80):  # Newton's method kept inside a bracket
         error = turn(psi) - fraction * period
-        slope = sum(1 / np.sqrt(np.cos(psi - c) ** 2 + (e * np.sin(psi - c)) ** 2) for c, e in clusters)
+        slope = sum(1 / np.sqrt(np.cos(psi - c) ** 2 + (1 - m) * np.sin(psi - c) ** 2) for c, m in clusters)
         if np.all(np.abs(error) <= 1e-14 * period):
             break
         low, high = np.where(error < 0, psi, low), np.where(error < 0, high, psi)

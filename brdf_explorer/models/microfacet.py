@@ -65,7 +65,8 @@ class Microfacet(Model):
         ndf = slot("ndf", self.ndf)
         wi = np.broadcast_to([0.0, 0.0, 1.0], wo.shape).copy()
         up = wo[..., 2] > HORIZON
-        wi[up] = mirror(wo[up], ndf.sample_D_visible(wo[up], u[up], alpha))
+        with np.errstate(under="ignore"):  # of a component of no weight
+            wi[up] = mirror(wo[up], ndf.sample_D_visible(wo[up], u[up], alpha))
 
         def weight(wo, wi):
             facet = slot("fresnel", self.fresnel).F(cos_facet(wo, wi), np.array(self.eta), np.array(self.k))
