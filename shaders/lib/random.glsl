@@ -9,7 +9,7 @@ const uint STREAM_LIGHT = 2u;  // direction drawn from the light
 // 2^-32. They belong to an algebraic field of degree 8: no combination with small whole numbers comes near a whole
 // number, so that the points of a stream spread evenly, and so do those of two or three together (Hua and Wang 1981,
 // "Applications of Number Theory to Numerical Analysis"; of the pairings tried, this one errs least). Powers of one
-// number, as in the sequences R_d, do worse: one of the six of R_6 is 15/23 to 3e-5.
+// number, as in the sequences R_d, do worse: one of the six of R_6 is 15/23 to 9e-6.
 const uvec2 STEPS[3] =
     uvec2[3](uvec2(2053070967u, 792579173u), uvec2(3714908163u, 3413342483u), uvec2(1944220111u, 1286625007u));
 
