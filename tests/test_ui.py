@@ -17,7 +17,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 SIZE = (1280, 800)
-SMALL = (960, 530)
+SMALL = (960, 530)  # twice as large it still fits the screen that the null platform has
 ACTS = {}
 
 
@@ -355,23 +355,26 @@ class User:
 
 
 def play(folder, what):
-    """Run the window, with "acts" or at a scale; outcomes.json: name -> "" or what went wrong, or a screenshot."""
+    """Run the window with the "acts" of a user, or as it is when "opened", or at a "single" or "doubled" scale.
+
+    Writes a screenshot, and outcomes.json: name of an act -> "" or what went wrong.
+    """
     from imgui_bundle import hello_imgui
     from imgui_bundle.immapp import testing  # isort: skip, before glfw
     import glfw
     from PIL import Image
 
-    from brdf_explorer.state import State
+    from brdf_explorer.state import State, load
     from brdf_explorer.ui.history import History
     from brdf_explorer.ui.window import Window
 
     glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
     glfw.init()
     glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
-    start = State()
+    start = load("gold", load("studio")).with_view("sphere", samples=128) if what == "opened" else State()
     window = Window(start)
     user = User(window, folder)
-    scale = 1.0 if what == "acts" else float(what)
+    scale = 2.0 if what == "doubled" else 1.0
     parameters = window.parameters(SIZE if what == "acts" else tuple(int(n * scale) for n in SMALL))
     geometry = parameters.app_window_params.window_geometry
     geometry.window_size_measure_mode = hello_imgui.WindowSizeMeasureMode.screen_coords  # its surface is never resized
@@ -436,7 +439,7 @@ def test_scale(played):
     from PIL import Image
 
     screens = []
-    for what in ("1", "2"):
+    for what in ("single", "doubled"):
         folder, log = played(what)
         path = folder / f"screen-{what}.png"
         assert path.exists(), log
@@ -445,6 +448,13 @@ def test_scale(played):
     small = [np.asarray(image.resize((240, 132), Image.Resampling.BOX), float) for image in screens]
     difference = np.abs(small[0] - small[1])
     assert difference.mean() < 1.5 and np.quantile(difference, 0.99) < 30
+
+
+def test_window(gpu, played, picture_regression):
+    """The picture at the top of README.md."""
+    folder, log = played("opened")
+    assert (folder / "screen-opened.png").exists(), log
+    picture_regression.check(folder / "screen-opened.png", "window", exact="llvmpipe" in gpu.device)
 
 
 @pytest.mark.parametrize("display", ["", ":987654"])
@@ -457,8 +467,8 @@ def test_no_screen_is_told_in_a_line(display):
 
 
 def test_nothing_is_left_in_the_working_directory(played):
-    folder, log = played("1")
-    assert {p.name for p in folder.iterdir() if not p.name.startswith(".")} <= {"screen-1.png", "outcomes.json"}, log
+    folder, log = played("single")
+    assert {p.name for p in folder.iterdir() if not p.name.startswith(".")} <= {"screen-single.png", "outcomes.json"}, log
 
 
 if __name__ == "__main__":

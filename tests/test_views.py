@@ -138,7 +138,7 @@ def test_develop_is_exact_srgb_over_the_backdrop_and_shows_nan(gpu):
 
 
 @pytest.mark.parametrize("name", VIEWS)
-@pytest.mark.parametrize("size, scale", [((676, 210), 1.0), ((400, 300), 1.0), ((1000, 900), 2.0)])
+@pytest.mark.parametrize("size, scale", [((676, 210), 1.0), ((282, 215), 1.0), ((400, 300), 1.0), ((1000, 900), 2.0)])
 @pytest.mark.parametrize("theta_o", [0.0, 40.0, 85.0])
 def test_labels_have_room(gpu, name, size, scale, theta_o):
     state = State(directions=Directions(theta_o=theta_o))

@@ -60,12 +60,13 @@ class Lobe(View):
         mirror = values.wo * [-1, -1, 1]
         dashes = [stroke([mirror * i / 28, mirror * (i + 1) / 28], "accent", 1.0) for i in range(0, 32, 2)]
         labels = []
-        for name, at, color in (
+        for name, w, color in (
             ("ωo", values.wo, "accent"),
             ("n", np.array([0, 0, 1.0]), "ink"),
             ("ωr", mirror, "accent"),
         ):
-            x, y = camera.pixels([1.2 * at])[0]
+            start, tip = camera.pixels([0 * w, 1.12 * w])
+            x, y = tip + 12 * scale * (tip - start) / max(np.linalg.norm(tip - start), 1e-9)
             if all(np.hypot(x - b.x, size[1] - y - b.y) > 20 * scale for b in labels):  # at theta_o = 0 one is enough
                 labels.append(Label(name, float(x), float(size[1] - y), colors[color], size=13.0))
         _, wi, f = values.plane()
@@ -134,10 +135,10 @@ class Camera:
         self.right = np.array([-sa, ca, 0.0])
         self.up = np.array([-se * ca, -se * sa, ce])
         self.size = size
-        # the box of the disc and of an upright arrow of length 1.25 fits beside the legend
-        low, high = -se, max(1.25 * ce, se)
-        room = np.array([size[0] - (BAR + 24) * scale, size[1] - 40 * scale])
-        self.unit = max(min(room[0] / 2.5, room[1] / (high - low)), 1.0) * view.zoom
+        # the box of the disc and of an upright arrow of length 1.12 fits beside the legend, with room for labels
+        low, high = -se, max(1.12 * ce, se)
+        room = np.array([size[0] - (BAR + 64) * scale, size[1] - 72 * scale])
+        self.unit = max(min(room[0] / 2.24, room[1] / (high - low)), 1.0) * view.zoom
         self.center = np.array([(size[0] - BAR * scale) / 2, size[1] / 2 - self.unit * (low + high) / 2])
 
     def pixels(self, points):

@@ -121,6 +121,11 @@ class Polar(View):
             draw_lines(gpu, target, [stroke(theta, reach(f64), "reference", 1.0) for _, _, theta, _, f64 in slices])
             legend.append(("thin: float64", "muted"))
         for i, (words, color) in enumerate(legend):
-            text(words, (12 * scale, height - (16 + 18 * i) * scale), color, (0.0, 0.5), 12.5)
+            at = np.array([12, 0]) * scale + [0, height - (16 + 18 * i) * scale]
+            end = at + np.array([7.5 * len(words), -8]) * scale  # about where the text ends
+            if (
+                i == 0 or np.linalg.norm(np.minimum(end - center, [0, np.inf])) > extent + 28 * scale
+            ):  # clear of the angles
+                text(words, at, color, (0.0, 0.5), 12.5)
         note = f"peak {number(peak, 4)} / sr at θo = {state.directions.theta_o:g}°"
         yield Picture(target, labels=labels, note=note)
