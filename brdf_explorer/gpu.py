@@ -251,10 +251,11 @@ class Gpu:
         float being n = 1 without the axis. Returns the value and then each `out` argument, as a list.
         """
         function = Signature(signature)
-        columns = [
-            np.asarray(a, dtype=t.dtype)[..., None] if t.components == 1 else np.asarray(a, dtype=t.dtype)
-            for a, t in zip(arguments, function.inputs, strict=True)
-        ]
+        with np.errstate(under="ignore"):  # what float32 cannot hold is 0
+            columns = [
+                np.asarray(a, dtype=t.dtype)[..., None] if t.components == 1 else np.asarray(a, dtype=t.dtype)
+                for a, t in zip(arguments, function.inputs, strict=True)
+            ]
         shape = np.broadcast_shapes(*(c.shape[:-1] for c in columns))
         count = int(np.prod(shape, dtype=int))
         width = min(ROW, max(count, 1))

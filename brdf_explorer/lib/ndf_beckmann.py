@@ -55,7 +55,7 @@ def visible_slope_beckmann(u, sin_o, cos_o):
         density = (cos_o - x * sin_o) * gauss * 2 * half_inv_sqrt_pi
         step = np.where(density > 0, x - quotient(error, np.maximum(density, 0.0)), low - 1)
         step = np.where((step > low) & (step < high), step, 0.5 * (low + high))
-        done = np.abs(step - x) <= 1e-16 * (1 + np.abs(x))
+        done = np.abs(step - x) <= 1e-15 * (1 + np.abs(x))
         x = step
         if np.all(done):
             break

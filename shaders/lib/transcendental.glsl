@@ -1,9 +1,9 @@
 // Elementary functions to float32 accuracy. The built-in ones may err by 4e-6 (exp), 2e-5 (atan) or 4e-4 (asin), by driver.
 
-// exp(x), relative error 2.5e-7; 0 where the result would leave float32's normal range.
+// exp(x) for x <= 88, relative error 2.5e-7; 0 where the result would leave float32's normal range. No upper limit is
+// imposed: a compiler makes `min` of it, which turns NaN into a number.
 float exp_precise(float x) {
   if (x < -87.0) return 0.0;
-  if (x > 88.0) x = 88.0;
   float n = floor(x * 1.44269504 + 0.5);
   float r = (x - n * 0.693359375) + n * 2.12194440e-4;  // ln 2 in two parts: n ln 2 is subtracted without rounding
   float series = 1.0 + r * (1.0 + r * (1.0 / 2.0 + r * (1.0 / 6.0 + r * (1.0 / 24.0 + r * (1.0 / 120.0 + r / 720.0)))));
