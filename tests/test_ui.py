@@ -55,9 +55,12 @@ def a_value_is_typed_and_reset(user):
     assert user.state.model.alpha == (0.0001, 0.0001)
     user.ctx.item_input_value(slider, 7.0)
     assert user.state.model.alpha == (1.0, 1.0)
+    user.ctx.sleep_no_skip(0.5, 0.1)  # longer than between the clicks of a double one
     user.ctx.item_double_click(slider)
     user.yield_()
     assert user.state.model.alpha == type(user.state.model)().alpha
+    user.keys("ctrl", "z")  # the first click of the two is no step of its own
+    assert user.state.model.alpha == (1.0, 1.0)
 
 
 @act

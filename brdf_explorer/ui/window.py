@@ -156,8 +156,12 @@ class Window:
         hello_imgui.get_runner_params().fps_idling.fps_idle = 10.0 if waiting else IDLE
 
     def settle(self):
-        """One step of undo for each action that ended, a drag when the mouse is let go."""
-        if not imgui.is_any_item_active() and not imgui.is_mouse_down(0):
+        """One step of undo for each action that ended: a drag when the mouse is let go, a click when it is no double one."""
+        io = imgui.get_io()
+        dragged = io.mouse_drag_max_distance_sqr[0] > io.mouse_drag_threshold**2
+        since = imgui.get_time() - io.mouse_clicked_time[0]
+        clicked = since < io.mouse_double_click_time and io.mouse_clicked_last_count[0] == 1 and not dragged
+        if not imgui.is_any_item_active() and not imgui.is_mouse_down(0) and not clicked:
             self.history.settle(self.state)
 
     def attempt(self, action, *arguments):
