@@ -471,7 +471,9 @@ def test_no_screen_is_told_in_a_line(display):
 
 def test_nothing_is_left_in_the_working_directory(played):
     folder, log = played("single")
-    assert {p.name for p in folder.iterdir() if not p.name.startswith(".")} <= {"screen-single.png", "outcomes.json"}, log
+    assert {p.name for p in folder.iterdir() if not p.name.startswith(".")} <= {"screen-single.png", "outcomes.json"}, (
+        log
+    )
 
 
 if __name__ == "__main__":
