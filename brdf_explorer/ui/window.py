@@ -9,7 +9,7 @@ from pathlib import Path
 from imgui_bundle import hello_imgui, imgui  # before glfw: one libglfw is loaded, and it must be imgui's
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
-from .. import gpu
+from .. import glsl, gpu
 from ..model import Invalid
 from ..state import PRESETS, SECTIONS, dumps, load, loads, save
 from ..views import VIEWS
@@ -426,6 +426,7 @@ class Window:
 
     def reload(self):
         """Draw all pictures anew, from the shaders as they are on disk now."""
+        glsl.reload()
         for canvas in self.canvases.values():
             canvas.restart()
 
