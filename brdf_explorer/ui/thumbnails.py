@@ -12,7 +12,7 @@ SAMPLES = 48
 
 
 class Thumbnails:
-    """Framebuffers by preset, theme and size."""
+    """Framebuffers by preset and theme."""
 
     def __init__(self, gpu):
         self.gpu = Gpu(gpu.ctx)  # its targets are not those of the panels' pictures
@@ -24,15 +24,16 @@ class Thumbnails:
         self.spent = False
 
     def get(self, name, theme, side):
-        """The framebuffer with the preset on a sphere of `side` pixels, or None in the frames before its turn."""
-        key = (name, theme, side)
-        if key not in self.drawn and not self.spent:
+        """The framebuffer with the preset on a sphere of `side` pixels; before its turn that of another size, or None."""
+        drawn_side, drawn = self.drawn.get((name, theme), (0, None))
+        if drawn_side != side and not self.spent:
             self.spent = True
             try:
-                self.drawn[key] = self.draw(name, theme, side)
+                drawn = self.draw(name, theme, side)
             except Invalid:
-                self.drawn[key] = None  # opening the preset will say why
-        return self.drawn.get(key)
+                drawn = None  # opening the preset will say why
+            self.drawn[name, theme] = side, drawn
+        return drawn
 
     def draw(self, name, theme, side):
         state = load(name, load(SCENE)).with_view("sphere", samples=SAMPLES, noise=0.1, background="plain")
