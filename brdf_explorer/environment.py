@@ -14,10 +14,8 @@ import numpy as np
 
 from .lib.common import PI, mix, normalize, split, vec
 from .lib.environment import environment_direction
+from .lib.srgb import LUMINANCE
 from .model import Invalid, nearest
-
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
-"""Luminance of linear RGB, Rec. 709."""
 
 WIDEST = 4096
 """Texels in the widest row of a file's picture: with its table that is 0.3 GB of textures."""

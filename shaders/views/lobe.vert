@@ -1,4 +1,6 @@
 // A vertex of the lobe: the direction of a table's texel, as long as its value says.
+#include "lib/srgb.glsl"
+
 uniform sampler2D directions;  // wi, a row a ray
 uniform sampler2D values;      // f there
 uniform vec3 right;            // the camera's axes
@@ -18,7 +20,7 @@ vec4 vertex(ivec2 at) {
   ivec2 count = textureSize(values, 0);
   ivec2 texel = ivec2(clamp(at.x, 0, count.x - 1), (at.y + count.y) % count.y);
   vec3 wi = texelFetch(directions, texel, 0).xyz;
-  float r = radius(quantity(dot(texelFetch(values, texel, 0).rgb, vec3(0.2126, 0.7152, 0.0722)), wi) * share, decades);
+  float r = radius(quantity(luminance(texelFetch(values, texel, 0).rgb), wi) * share, decades);
   return vec4(r * wi, r);
 }
 
