@@ -1,13 +1,26 @@
 """What diagrams share: the quantity along the radius, its scale, arrows and numbers."""
 
+from dataclasses import dataclass
+
 import numpy as np
+
+from ..model import choice, param
+from .picture import View
 
 QUANTITIES = {"f": "f  [1/sr]", "f_cos": "f cos θ  [1/sr]"}
 
 
-def luminance(color):
-    """Relative luminance of linear sRGB colours (..., 3)."""
-    return color @ np.array([0.2126, 0.7152, 0.0722])
+@dataclass(frozen=True)
+class Diagram(View):
+    """A view in which the radius shows f or f cos over directions to the light."""
+
+    quantity: str = choice("f", QUANTITIES, "what the radius shows: f, or f times the cosine at the light")
+    radius: str = choice("linear", ("linear", "log"), "scale of the radius")
+    decades: int = param(4, 1, 8, "decades that a logarithmic radius shows below the peak")
+
+    def factor(self, wi):
+        """What f is multiplied by, for directions wi (..., 3)."""
+        return wi[..., 2] if self.quantity == "f_cos" else 1.0
 
 
 def radius(share, scale, decades):

@@ -5,25 +5,24 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..glsl import assemble
-from ..model import choice, param
-from .diagram import QUANTITIES, arrow, luminance, nice_step, number, powers_below, radius
+from ..lib.srgb import luminance
+from ..model import param
+from .diagram import QUANTITIES, Diagram, arrow, nice_step, number, powers_below, radius
 from .lines import Stroke, draw_lines
-from .picture import PALETTES, R2, Label, Picture, View, rgb
+from .picture import PALETTES, R2, Label, Picture, rgb
 from .table import NODES, RAYS, table
 
 PASSES = 8  # jittered drawings whose mean has smooth edges
 BAR = 76  # points at the right for the legend
+ARROW = 1.12  # length of the arrows, in radii of the disc
 
 
 @dataclass(frozen=True)
-class Lobe(View):
+class Lobe(Diagram):
     """The lobe of f or f cos over all directions to the light, for one viewer."""
 
     title = "Lobe"
 
-    quantity: str = choice("f", ("f", "f_cos"), "what the radius shows: f, or f times the cosine at the light")
-    radius: str = choice("linear", ("linear", "log"), "scale of the radius")
-    decades: int = param(4, 1, 8, "decades that a logarithmic radius shows below the peak")
     azimuth: float = param(-60.0, -180.0, 180.0, "azimuth of the camera", unit="deg")
     elevation: float = param(20.0, 0.0, 90.0, "height of the camera over the surface", unit="deg")
     zoom: float = param(1.0, 0.2, 50.0, "size of the lobe", scale="log")
@@ -34,8 +33,7 @@ class Lobe(View):
     def pictures(self, gpu, state, size, scale=1.0):
         colors = PALETTES[state.look.theme]
         values = table(gpu, state.model, state.directions)
-        cos = values.grid.wi[..., 2] if self.quantity == "f_cos" else 1.0
-        peak = float((luminance(values.f) * cos).max())
+        peak = float((luminance(values.f) * self.factor(values.grid.wi)).max())
         share = 1 / peak if peak > 0 else 0.0
         target = gpu.target("lobe", size, 4, "f1")
         target.clear(*rgb(colors["paper"]), 1.0)
@@ -53,7 +51,7 @@ class Lobe(View):
         def pointers(opacity):
             strokes = []
             for w, color in ((np.array([0, 0, 1.0]), "ink"), (values.wo, "accent")):
-                tips = arrow(*camera.pixels([0 * w, 1.12 * w]), scale)
+                tips = arrow(*camera.pixels([0 * w, ARROW * w]), scale)
                 strokes += [Stroke(points, colors[color], 1.6 * scale, opacity) for points in tips]
             return strokes
 
@@ -65,12 +63,12 @@ class Lobe(View):
             ("n", np.array([0, 0, 1.0]), "ink"),
             ("ωr", mirror, "accent"),
         ):
-            start, tip = camera.pixels([0 * w, 1.12 * w])
+            start, tip = camera.pixels([0 * w, ARROW * w])
             x, y = tip + 12 * scale * (tip - start) / max(np.linalg.norm(tip - start), 1e-9)
             if all(np.hypot(x - b.x, size[1] - y - b.y) > 20 * scale for b in labels):  # at theta_o = 0 one is enough
                 labels.append(Label(name, float(x), float(size[1] - y), colors[color], size=13.0))
         _, wi, f = values.plane()
-        profile = luminance(f) * (wi[:, 2] if self.quantity == "f_cos" else 1.0) * share
+        profile = luminance(f) * self.factor(wi) * share
         outline = stroke(wi * radius(profile, self.radius, self.decades)[:, None], "ink", 1.0, 0.45)
         below, above = [*disc, *dashes, *pointers(1.0)], [outline, *pointers(0.25)]  # seen through the lobe
         note = "albedo " + "  ".join(f"{a:.3f}" for a in values.albedo)
@@ -135,10 +133,10 @@ class Camera:
         self.right = np.array([-sa, ca, 0.0])
         self.up = np.array([-se * ca, -se * sa, ce])
         self.size = size
-        # the box of the disc and of an upright arrow of length 1.12 fits beside the legend, with room for labels
-        low, high = -se, max(1.12 * ce, se)
+        # the box of the disc and of an upright arrow fits beside the legend, with room for labels
+        low, high = -se, max(ARROW * ce, se)
         room = np.array([size[0] - (BAR + 64) * scale, size[1] - 72 * scale])
-        self.unit = max(min(room[0] / 2.24, room[1] / (high - low)), 1.0) * view.zoom
+        self.unit = max(min(room[0] / (2 * ARROW), room[1] / (high - low)), 1.0) * view.zoom
         self.center = np.array([(size[0] - BAR * scale) / 2, size[1] / 2 - self.unit * (low + high) / 2])
 
     def pixels(self, points):

@@ -4,10 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model import choice, param
-from .diagram import QUANTITIES, arrow, luminance, nice_step, number, powers_below, radius
+from ..lib.srgb import luminance
+from ..model import choice
+from .diagram import QUANTITIES, Diagram, arrow, nice_step, number, powers_below, radius
 from .lines import Stroke, draw_lines
-from .picture import PALETTES, Curves, Label, Picture, View, rgb
+from .picture import PALETTES, Curves, Label, Picture, rgb
 from .table import table
 
 MARGIN = 44  # points around the half disc, for the angles
@@ -15,14 +16,11 @@ FOOT = 46  # points below it, for values and a note
 
 
 @dataclass(frozen=True)
-class Polar(View):
+class Polar(Diagram):
     """The slice through the plane of incidence: f or f cos over the direction to the light, as a polar plot."""
 
     title = "Polar slice"
 
-    quantity: str = choice("f", ("f", "f_cos"), "what the radius shows: f, or f times the cosine at the light")
-    radius: str = choice("linear", ("linear", "log"), "scale of the radius")
-    decades: int = param(4, 1, 8, "decades that a logarithmic radius shows below the peak")
     curves: str = choice(
         "materials", ("materials", "rgb"), "a curve for each material, or red, green and blue of the active one"
     )
@@ -46,7 +44,7 @@ class Polar(View):
             t = table(gpu, material.model, state.directions)
             theta, wi, f32 = t.plane()
             f64 = material.model.f(t.wo, wi)
-            cos = wi[:, 2] if self.quantity == "f_cos" else 1.0
+            cos = self.factor(wi)
             if self.curves == "rgb":
                 for c, channel in enumerate(("red", "green", "blue")):
                     found.append((channel, channel, theta, f32[:, c] * cos, f64[:, c] * cos))
