@@ -9,7 +9,7 @@ from ..glsl import assemble, of_model
 from ..model import choice, param
 from .picture import R2, Picture, View
 
-DISC = 3 * 32  # vertices of disc.vert's triangles
+SIDES = 32  # of the polygon that disc.vert draws around the sphere
 SMOOTH = 16  # jittered passes after which edges and highlights of a directional light are smooth
 
 
@@ -46,13 +46,14 @@ class Sphere(View):
         program = gpu.program(fragment, assemble("views/disc.vert"))
         width, height = map(float, size)
         uniforms |= {"size": (width, height), "center": (width / 2, height / 2), "radius": self.radius(size)}
+        uniforms |= {"sides": float(SIDES)}
         target = gpu.target("sphere", size)  # new ones are clear, and what lies outside of the disc stays so
         most = self.samples if textures else SMOOTH
         noise, half = None, None
         for n in range(1, most + 1):
             jitter = (R2 * (n - 1) + 0.5) % 1.0 - 0.5
             uniforms |= {"jitter": tuple(jitter), "share": 1 / n, "pass": n - 1}
-            gpu.draw(program, target, uniforms, textures, vertices=DISC, blend="mean" if n > 1 else None)
+            gpu.draw(program, target, uniforms, textures, vertices=3 * SIDES, blend="mean" if n > 1 else None)
             if textures and n >= 16 and n & (n - 1) == 0:
                 mean = gpu.pixels(target)
                 noise = standard_error(mean, half) if half is not None else None
