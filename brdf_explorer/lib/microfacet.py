@@ -2,12 +2,7 @@
 
 import numpy as np
 
-from .common import length, normalize
-
-
-def half_vector(wo, wi):
-    """The one microfacet normal that mirrors wo into wi: the half vector."""
-    return normalize(wo + wi)
+from .common import length
 
 
 def cos_facet(wo, wi):

@@ -1,8 +1,4 @@
 // The geometry of reflection by a facet.
-#include "lib/common.glsl"
-
-// The one microfacet normal that mirrors wo into wi: the half vector.
-vec3 half_vector(vec3 wo, vec3 wi) { return normalize(wo + wi); }
 
 // wo . wm = wi . wm, the cosine at the facet, as |wo + wi| / 2: 1 + wo . wi would cancel where wi is near -wo.
 float cos_facet(vec3 wo, vec3 wi) { return min(0.5 * length(wo + wi), 1.0); }

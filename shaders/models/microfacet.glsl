@@ -2,6 +2,7 @@
 // f = D G F / (4 cos theta_i cos theta_o). Leaves out light that meets more than one facet, so rough metals lose energy:
 // up to 0.69 of it for GGX at alpha = 1, seen along the normal (its albedo is 1 - ln 2), and transmission.
 #include "params.glsl"
+#include "lib/common.glsl"
 #include "lib/microfacet.glsl"
 #include "lib/ndf_{ndf}.glsl"
 #include "lib/smith_{ndf}_{smith}.glsl"
