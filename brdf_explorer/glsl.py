@@ -116,3 +116,48 @@ def of_model(path, model, dialect="330 core", slots=None, generated=None):
         {"params.glsl": params_glsl("material", type(model)), **(generated or {})},
         dialect,
     )
+
+
+class Signature:
+    """A GLSL function's signature, parsed: the types of what goes in and of what comes out."""
+
+    class Kind:
+        def __init__(self, glsl):
+            self.glsl = glsl
+            self.unsigned = glsl.startswith("u")
+            self.components = int(glsl[-1]) if glsl[-1].isdigit() else 1
+            self.dtype = "u4" if self.unsigned else "f4"
+
+    def __init__(self, text):
+        head, _, tail = text.partition("(")
+        result, self.name = head.split()
+        parts = [p.split() for p in tail.rstrip(") {").split(",")]
+        self.inputs = [self.Kind(p[-2]) for p in parts if p[0] != "out"]
+        self.out = [self.Kind(p[-2]) for p in parts if p[0] == "out"]
+        self.order = [p[0] == "out" for p in parts]
+        self.outputs = [self.Kind(result), *self.out]
+
+    def call(self):
+        """GLSL of a main that fetches the arguments of this pixel's row, calls the function and writes what it gives."""
+        lines = []
+        for i, kind in enumerate(self.inputs):
+            lines.append(f"uniform highp {'u' if kind.unsigned else ''}sampler2D argument{i};")
+        for i in range(len(self.outputs)):
+            lines.append(f"layout(location = {i}) out vec4 result{i};")
+        lines.append("void main() {\n  ivec2 row = ivec2(gl_FragCoord.xy);")
+        for i, kind in enumerate(self.out):
+            lines.append(f"  {kind.glsl} out{i};")
+        inputs, out = iter(range(len(self.inputs))), iter(range(len(self.out)))
+        arguments = []
+        for is_out in self.order:
+            if is_out:
+                arguments.append(f"out{next(out)}")
+            else:
+                i = next(inputs)
+                arguments.append(f"texelFetch(argument{i}, row, 0).{'xyzw'[: self.inputs[i].components]}")
+        lines.append(f"  {self.outputs[0].glsl} value = {self.name}({', '.join(arguments)});")
+        for i, kind in enumerate(self.outputs):
+            value = "value" if i == 0 else f"out{i - 1}"
+            padding = ", 0.0" * (4 - kind.components)
+            lines.append(f"  result{i} = vec4({value}{padding});")
+        return "\n".join([*lines, "}\n"])

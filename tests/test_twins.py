@@ -13,8 +13,7 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 
-from brdf_explorer.glsl import SHADERS, assemble
-from brdf_explorer.gpu import Signature
+from brdf_explorer.glsl import SHADERS, Signature, assemble
 from brdf_explorer.lib.common import PI, TWO_PI, length, normalize, quotient, vec
 from brdf_explorer.model import Choice, Param, declared
 from brdf_explorer.models import MODELS
@@ -201,7 +200,7 @@ def draw(function, n, rng):
         how = DRAWS.get(f"{function.name}.{name}", DRAWS.get(name))
         assert how, f"{function.file}: {function.name}: say in DRAWS from where the argument {name} is drawn"
         drawn[name] = how(rng, n, kinds[name].components, drawn).astype(kinds[name].dtype)
-        if kinds[name].dtype is np.float32:
+        if kinds[name].dtype == "f4":
             drawn[name] = drawn[name].astype(float)
     return [drawn[name][:, 0] if kinds[name].components == 1 else drawn[name] for _, name in function.arguments]
 
