@@ -10,4 +10,5 @@ def cosine_hemisphere(u):
     x, y = split(u)
     phi = TWO_PI * y
     r = np.sqrt(x)
-    return vec(r * np.cos(phi), r * np.sin(phi), np.sqrt(1 - x))
+    with np.errstate(under="ignore"):  # of a component of no length
+        return vec(r * np.cos(phi), r * np.sin(phi), np.sqrt(1 - x))
