@@ -206,7 +206,7 @@ def changed(state, flags, given):
         flag = flags[name]
         changes.setdefault(flag.section, {})[flag.name] = flag.parsed(words)
     for section, values in changes.items():
-        if section == "light" and "file" in values:
+        if section == "light" and values.get("file"):
             values["file"] = os.path.abspath(values["file"])  # a state knows no working folder
         if section == "material":
             state = state.with_model(replace(state.model, **values))
