@@ -2,15 +2,13 @@
 
 import numpy as np
 
-from .common import dot
-
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 """Luminance of linear RGB: Rec. 709's weights."""
 
 
 def luminance(color):
     """Luminance (...) of linear colours (..., 3)."""
-    return dot(color, LUMINANCE)
+    return np.asarray(color) @ LUMINANCE
 
 
 def srgb_encode(linear):
