@@ -23,6 +23,7 @@ class Group(click.Group):
     def main(self, args=None, prog_name="brdf-explorer", standalone_mode=True, **extra):
         if not standalone_mode:
             return super().main(args, prog_name, standalone_mode=False, **extra)
+        sys.stdout.reconfigure(errors="backslashreplace")  # on Windows a pipe knows few letters
         try:
             status = super().main(args, prog_name, standalone_mode=False, **extra) or 0
             sys.stdout.flush()
@@ -404,7 +405,7 @@ def eval_(state, preset, wo, wi, shader, as_json):
         "albedo": albedo(model, directions["wo"], tolerance=1e-8, most=1024).tolist(),
     }
     if as_json:
-        click.echo(json.dumps(answer, indent=2, ensure_ascii=False, allow_nan=False))
+        click.echo(json.dumps(answer, indent=2, allow_nan=False))
         return
     digits = 9 if shader else 17
     rows = {"f [1/sr]": answer["f"], "pdf [1/sr]": [answer["pdf"]], "albedo(wo)": answer["albedo"]}

@@ -547,6 +547,15 @@ def test_a_reader_that_leaves_and_an_interrupt_are_quiet(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("form", [[], ["--json"]], ids=["text", "json"])
+def test_a_pipe_that_lacks_a_letter_gets_the_rest(tmp_path, form):
+    place = tmp_path / "omega.toml"
+    place.write_text(dumps(State((Material("ω"),))), encoding="utf-8")
+    done = process("eval", place, "--wo", "40,0", "--wi", "40,180", *form, env={"PYTHONIOENCODING": "cp1252"})
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "\\u03c9" in done.stdout
+
+
 def test_help_and_version_need_neither_numpy_nor_opengl():
     code = (
         "import sys; from brdf_explorer.cli import main\ntry: main(['--help'])\nexcept SystemExit: print(*sys.modules)"
