@@ -161,3 +161,18 @@ def test_a_picture_depends_on_what_its_view_says_it_shows():
     assert state.views["sphere"].shows(state) == state.views["sphere"].shows(darker)
     moved = replace(state, directions=Directions(theta_o=10.0))
     assert state.views["lobe"].shows(state) != state.views["lobe"].shows(moved)
+
+
+@pytest.mark.parametrize("theta_o", [0.0, 40.0, 89.9])
+def test_legend_of_the_slice_names_every_curve_that_has_room(gpu, theta_o):
+    names = "Gold", "Iron", "Titanium", "Chalk", "White microfacets", "Brushed aluminium, across"
+    state = State(tuple(Material(name, MICROFACET()) for name in names), directions=Directions(theta_o=theta_o))
+    view = state.views["polar"]
+
+    def words(*size):
+        return [label.text for label in last(view.pictures(gpu, state, size)).labels]
+
+    assert set(names) <= set(words(900, 600))
+    assert all(any(w[:6] == name[:6] for w in words(420, 320)) for name in names)
+    assert any(w.startswith("+ ") and w.endswith(" more") for w in words(280, 210))
+    assert not set(names) & set(words(200, 150))

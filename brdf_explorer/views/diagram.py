@@ -57,3 +57,12 @@ def number(value, digits=3):
         mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
         return f"{float(mantissa):g}e{int(exponent)}"
     return f"{float(f'{value:.{digits}g}'):g}"
+
+
+def apart(places, widths):
+    """Indices of labels that do not overlap along a line, the last first; rising places, each label centred on its own."""
+    kept = []
+    for i in reversed(range(len(places))):
+        if not kept or places[kept[-1]] - places[i] >= (widths[kept[-1]] + widths[i]) / 2:
+            kept.append(i)
+    return kept

@@ -7,7 +7,7 @@ import numpy as np
 from ..glsl import assemble
 from ..lib.srgb import luminance
 from ..model import param
-from .diagram import QUANTITIES, Diagram, arrow, nice_step, number, powers_below, radius
+from .diagram import QUANTITIES, Diagram, apart, arrow, nice_step, number, powers_below, radius
 from .lines import Stroke, draw_lines
 from .picture import PALETTES, R2, Label, Picture, rgb
 from .table import NODES, RAYS, table
@@ -116,10 +116,12 @@ class Lobe(Diagram):
         else:
             ticks = powers_below(peak * 0.6, self.decades)
         labels = [title]
-        for value in [*ticks, peak]:
-            height = float(radius(np.array(value / peak if peak > 0 else 0.0), self.radius, self.decades))
-            y = size[1] - bottom - height * (top - bottom)
-            labels.append(Label(number(value), left + 16 * scale, y, colors["muted"], (0.0, 0.5), 11.5))
+        values = np.array([*ticks, peak])
+        shares = values / peak if peak > 0 else 0 * values
+        heights = bottom + radius(shares, self.radius, self.decades) * (top - bottom)
+        for i in apart(heights, np.full(len(values), 12 * scale)):
+            y = size[1] - heights[i]
+            labels.append(Label(number(values[i]), left + 16 * scale, y, colors["muted"], (0.0, 0.5), 11.5))
         return labels
 
 

@@ -6,13 +6,17 @@ import numpy as np
 
 from ..lib.srgb import luminance
 from ..model import choice
-from .diagram import QUANTITIES, Diagram, arrow, nice_step, number, powers_below, radius
+from .diagram import QUANTITIES, Diagram, apart, arrow, nice_step, number, powers_below, radius
 from .lines import Stroke, draw_lines
 from .picture import PALETTES, Curves, Label, Picture, rgb
 from .table import table
 
 MARGIN = 44  # points around the half disc, for the angles
 FOOT = 46  # points below it, for values and a note
+NODES = 385  # of each half of a slice: many more than the lobe has, so that no tip has corners in a large picture
+LINE = 18  # points from one line of the legend to the next
+LETTER = 5.6  # points that a letter of the legend takes, on average
+LETTERS = 10  # that a line of the legend has room for at least
 
 
 @dataclass(frozen=True)
@@ -41,7 +45,7 @@ class Polar(Diagram):
         materials = state.materials if self.curves == "materials" else (state.material,)
         found = []
         for index, material in enumerate(materials):
-            t = table(gpu, material.model, state.directions)
+            t = table(gpu, material.model, state.directions, rays=2, nodes=NODES)
             theta, wi, f32 = t.plane()
             f64 = material.model.f(t.wo, wi)
             cos = self.factor(wi)
@@ -99,31 +103,57 @@ class Polar(Diagram):
         strokes += [stroke(a, np.array([0.0, 1.0]), "grid", 1.0) for a in spokes]
         strokes.append(stroke(arc, 1.0, "muted", 1.0))
         strokes.append(stroke(np.array([-np.pi / 2, np.pi / 2]), 1.0, "ink", 1.2))
+        viewer = place(theta_o, 1 + 34 * scale / extent)
         for a in spokes[::2]:
-            text(f"{abs(round(np.degrees(a)))}°", place(a, 1 + 17 * scale / extent), "muted")
-        for value, r in zip(rings, reach(rings), strict=True):
-            text(number(value), place(np.pi / 2, r) - [0, 12 * scale], "muted", points=11.0)
+            at = place(a, 1 + 17 * scale / extent)
+            if np.any(np.abs(at - viewer) > np.array([20, 12]) * scale):
+                text(f"{abs(round(np.degrees(a)))}°", at, "muted")
+        words = [number(value) for value in rings]
+        for i in apart(extent * reach(rings), [(5.5 * len(w) + 4) * scale for w in words]):
+            text(words[i], place(np.pi / 2, reach(rings[i])) - [0, 12 * scale], "muted", points=11.0)
 
         # the viewer, and dashed where a mirror would send its ray
         strokes += [Stroke(p, colors["accent"], 1.6 * scale) for p in arrow(center, place(theta_o, 1.0), scale)]
         strokes += [stroke(-theta_o, np.array([i, i + 1]) / 40, "accent", 1.0) for i in range(0, 40, 2)]
-        text("ωo", place(theta_o, 1 + 34 * scale / extent), "accent", points=13.0)
+        text("ωo", viewer, "accent", points=13.0)
 
         legend = [(QUANTITIES[self.quantity], "ink")]
         for name, key, theta, f32, _ in slices:
             color = key if self.curves == "rgb" else colors["curves"][key % len(colors["curves"])]
-            strokes.append(stroke(theta, reach(f32), color, 3.2))
+            strokes.append(stroke(theta, reach(f32), color, 4.0))
             legend.append((name, color))
         draw_lines(gpu, target, strokes)
         if self.reference == "on":
             draw_lines(gpu, target, [stroke(theta, reach(f64), "reference", 1.0) for _, _, theta, _, f64 in slices])
-            legend.append(("thin: float64", "muted"))
-        for i, (words, color) in enumerate(legend):
-            at = np.array([12, 0]) * scale + [0, height - (16 + 18 * i) * scale]
-            end = at + np.array([7.5 * len(words), -8]) * scale  # about where the text ends
-            if (
-                i == 0 or np.linalg.norm(np.minimum(end - center, [0, np.inf])) > extent + 28 * scale
-            ):  # clear of the angles
-                text(words, at, color, (0.0, 0.5), 12.5)
+            legend.append(("float64, thin", "muted"))
+        for words, color, side, y in self.columns(legend, size, scale):
+            x = 12 * scale if side == "left" else width - 12 * scale
+            text(words, (x, height - y), color, (0.0 if side == "left" else 1.0, 0.5), 12.5)
         note = f"peak {number(peak, 4)} / sr at θo = {state.directions.theta_o:g}°"
         yield Picture(target, labels=labels, note=note)
+
+    def columns(self, legend, size, scale):
+        """The legend [(words, colour)] in the upper corners, clear of angles and viewer: [(words, colour, side, y from the top)].
+
+        Words that are too long end in an ellipsis. Where lines do not suffice, the last says how many more there are.
+        """
+        center, extent = self.disc(size, scale)
+        least = min(LETTERS, max(len(words) for words, _ in legend))
+        lines = []
+        for side, around in (("left", 28), ("right", 50)):
+            clear = extent + around * scale
+            for y in np.arange(16, size[1] / scale, LINE) * scale:
+                above = size[1] - y - 8 * scale - center[1]
+                end = size[0] / 2 - (np.sqrt(clear**2 - above**2) if 0 <= above < clear else 8 * scale)
+                letters = int((end - 12 * scale) / (LETTER * scale))
+                if above < 0 or letters < least:
+                    break
+                lines.append((letters, side, y))
+        if not lines:  # a tiny picture says what it shows, no more
+            return [(*legend[0], "left", 16 * scale)]
+        if len(lines) < len(legend):
+            legend = [*legend[: len(lines) - 1], (f"+ {len(legend) - len(lines) + 1} more", "muted")]
+        return [
+            (words if len(words) <= letters else words[: letters - 1].rstrip(" ,") + "…", color, side, y)
+            for (words, color), (letters, side, y) in zip(legend, lines, strict=False)
+        ]
