@@ -537,8 +537,7 @@ def check(state, preset):
             show(law.name)
             broken += not law.ok
             mark = "ok" if law.ok else "broken"
-            limit = "" if law.limit is None else f"{law.limit:.3g}"
-            rows.append((law.name, f"{law.measured:.3g}", limit, mark, law.note))
+            rows.append((law.name, f"{law.measured:.3g}", f"{law.limit:.3g}", mark, law.note))
     print_table(("law", "measured", "limit", "", "note"), rows, title=state.material.name)
     return int(broken > 0)
 

@@ -213,7 +213,6 @@ def test_check_prints_laws_and_fails_if_one_is_broken(run, monkeypatch, ok):
         found.append(model)
         yield SimpleNamespace(name="reciprocity", measured=1e-16, limit=1e-12, ok=True, note="")
         yield SimpleNamespace(name="albedo", measured=1.5, limit=1.0, ok=ok, note="[brackets] stay")
-        yield SimpleNamespace(name="albedo of grazing", measured=0.9, limit=None, ok=True, note="")
 
     of_module(monkeypatch, "brdf_explorer.measure.laws", laws=laws)
     result = run("check", "gold", "--alpha", "0.5")
