@@ -40,6 +40,7 @@ class Polar(Diagram):
         extent = max(min(size[0] / 2 - MARGIN * scale, size[1] - around), 1.0)
         return np.array([size[0] / 2, FOOT * scale + max(size[1] - extent - around, 0.0) / 2]), extent
 
+    @np.errstate(under="ignore")  # in the tails of a density
     def slices(self, gpu, state):
         """[(name, colour role or number, theta (n,), float32 values (n,), float64 values (n,))] of each curve."""
         materials = state.materials if self.curves == "materials" else (state.material,)
