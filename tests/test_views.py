@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 from PIL import ImageFont
 
+from brdf_explorer.glsl import Source
 from brdf_explorer.lib.srgb import srgb_decode, srgb_encode
 from brdf_explorer.measure import albedo
 from brdf_explorer.measure.grid import direction
+from brdf_explorer.model import Invalid
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Directions, Light, Look, Material, State
 from brdf_explorer.views import VIEWS
@@ -62,6 +64,14 @@ def test_table_finds_the_peak(gpu, ndf, alpha, theta_o):
 def test_table_gives_the_albedo(gpu, model):
     t = table(gpu, model, Directions(theta_o=50.0))
     np.testing.assert_allclose(t.albedo, albedo(model, t.wo), atol=2e-3)
+
+
+def test_a_shader_that_gives_nan_is_told_not_drawn(gpu, monkeypatch):
+    text = "#version 330 core\nout vec4 value;\nvoid main() { value = vec4(sqrt(-gl_FragCoord.x)); }\n"
+    monkeypatch.setattr("brdf_explorer.views.table.of_model", lambda *_: Source(text, (), ()))
+    for view in ("lobe", "polar"):
+        with pytest.raises(Invalid, match="f is not a finite number"):
+            next(State().views[view].pictures(gpu, State(), (64, 64)))
 
 
 def test_plane_runs_from_horizon_to_horizon_through_the_mirror_direction(gpu):

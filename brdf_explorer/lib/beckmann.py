@@ -1,4 +1,4 @@
-"""Smith's Lambda of Gaussian slopes. Smith 1967; Walter et al. 2007, Eq. 24; Heitz 2014, Eq. 66.
+"""Smith's Lambda of Gaussian slopes. Smith 1967; Walter et al. 2007, Eq. 26; Heitz 2014, Eq. 66.
 
 Lambda = (exp(-a^2) / (a sqrt(pi)) - erfc(a)) / 2 = exp(-a^2) h(a) / a, a = 1 / (alpha tan theta).
 """

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..glsl import of_model
 from ..measure.grid import Grid, direction, grid, plane_of_incidence
+from ..model import Invalid
 
 RAYS = 96
 NODES = 49
@@ -27,8 +28,14 @@ class Table:
 
     @cached_property
     def f(self):
-        """Values read back, (rays, nodes, 3)."""
-        return self.gpu.pixels(self.target)[::-1, :, :3].astype(float)
+        """Values read back, (rays, nodes, 3). Raises Invalid for NaN and infinity, of which no diagram could be drawn."""
+        values = self.gpu.pixels(self.target)[::-1, :, :3].astype(float)
+        wrong = np.count_nonzero(~np.isfinite(values))
+        if wrong:
+            raise Invalid(
+                f"f is not a finite number: {wrong} of {values.size} values of the shader are NaN or infinite"
+            )
+        return values
 
     @cached_property
     def weight(self):
