@@ -245,7 +245,7 @@ def plot(state, view, slices, size):
         axes.plot(theta, reach(f32), color=color, linewidth=2.4, label=f" {legible(name)}")
     if view.reference == "on":
         for i, (_, _, theta, _, f64) in enumerate(slices):
-            axes.plot(theta, reach(f64), color=colors["reference"], linewidth=0.8, label="" if i else " float64, thin")
+            axes.plot(theta, reach(f64), color=colors["reference"], linewidth=0.8, label="" if i else " float64")
     theta_o = np.radians(state.directions.theta_o)
     axes.annotate("", (theta_o, high), (theta_o, low), arrowprops={"arrowstyle": "->", "color": colors["accent"]})
     axes.text(theta_o, low + 1.08 * (high - low), "ωo", color=colors["accent"], ha="center", va="center")

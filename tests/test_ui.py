@@ -199,6 +199,30 @@ def a_bad_preset_is_refused_in_words(user):
     user.window.dropped.append(str(user.folder / "missing.toml"))
     user.yield_()
     assert "missing.toml" in user.window.notice and user.state == start
+    (user.folder / "broken.exr").write_bytes(b"v/1\x01")
+    for name in ("broken.exr", "missing.hdr"):
+        user.window.dropped.append(str(user.folder / name))
+        user.yield_()
+        assert name in user.window.notice and user.window.notice_error and user.state == start
+
+
+@act
+def escape_closes_what_popped_up(user):
+    from imgui_bundle import imgui
+
+    start = user.state
+    user.item("more")
+    assert any_popup(imgui)
+    user.keys("escape")
+    assert not any_popup(imgui) and user.state == start
+    user.window.ask_open()
+    user.yield_()
+    user.keys("escape")
+    assert user.window.dialog is None and not any_popup(imgui)
+
+
+def any_popup(imgui):
+    return imgui.is_popup_open("", imgui.PopupFlags_.any_popup)
 
 
 @act

@@ -10,6 +10,7 @@ from imgui_bundle import hello_imgui, imgui  # before glfw: one libglfw is loade
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from .. import glsl, gpu
+from ..environment import environment
 from ..model import Invalid
 from ..state import PRESETS, SECTIONS, dumps, load, loads, save
 from ..views import VIEWS
@@ -315,6 +316,8 @@ class Window:
             self.ask_save()
         if io.want_text_input:
             return
+        if pressed(C.escape) and not self.dialog:  # which closes itself
+            imgui.internal.close_popups_except_modals()
         if pressed(ctrl | C.z):
             self.undo()
         if pressed(ctrl | shift | C.z) or pressed(ctrl | C.y):
@@ -359,6 +362,7 @@ class Window:
             except Invalid:
                 if suffix not in (".hdr", ".exr"):
                     raise
+                environment("file", str(path))  # or what is wrong with it
                 self.state = replace(self.state, light=replace(self.state.light, environment="file", file=str(path)))
             self.path = path if str(path).endswith(".toml") else None
             self.say(f"Opened {path}")

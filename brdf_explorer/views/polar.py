@@ -126,7 +126,7 @@ class Polar(Diagram):
         draw_lines(gpu, target, strokes)
         if self.reference == "on":
             draw_lines(gpu, target, [stroke(theta, reach(f64), "reference", 1.0) for _, _, theta, _, f64 in slices])
-            legend.append(("float64, thin", "muted"))
+            legend.append(("float64", "reference"))
         for words, color, side, y in self.columns(legend, size, scale):
             x = 12 * scale if side == "left" else width - 12 * scale
             text(words, (x, height - y), color, (0.0 if side == "left" else 1.0, 0.5), 12.5)
@@ -155,6 +155,6 @@ class Polar(Diagram):
         if len(lines) < len(legend):
             legend = [*legend[: len(lines) - 1], (f"+ {len(legend) - len(lines) + 1} more", "muted")]
         return [
-            (words if len(words) <= letters else words[: letters - 1].rstrip(" ,") + "…", color, side, y)
+            (words if len(words) <= letters else words[: letters - 1].rstrip() + "…", color, side, y)
             for (words, color), (letters, side, y) in zip(legend, lines, strict=False)
         ]
