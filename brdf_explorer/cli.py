@@ -62,16 +62,18 @@ class Flagged(click.Command):
     """A command on a preset: PRESET, `--scene`, and a flag for each parameter of some sections of the preset.
 
     sections: "material", "directions", "light", "look", and "view" for that of the option --view. The callback gets the State.
+    scene: the one without `--scene`.
     """
 
-    def __init__(self, *args, sections=("material",), **kwargs):
+    def __init__(self, *args, sections=("material",), scene=None, **kwargs):
         super().__init__(*args, **kwargs)
         self.sections = sections
+        self.scene = scene
 
     def parse_args(self, ctx, args):
         view = after(args, "--view") or next((p.default for p in self.params if p.name == "view"), None)
         preset = self.preset(args)
-        state = loaded(preset, after(args, "--scene"))
+        state = loaded(preset, after(args, "--scene") or self.scene)
         ctx.meta["state"] = state
         flags = ctx.meta["flags"] = flags_of(state, [view if s == "view" else s for s in self.sections])
         rest, given = split(args, flags)
@@ -236,8 +238,7 @@ def loaded(preset, scene=None):
     from .models import MODELS
     from .state import Material, State, load, presets
 
-    if preset is None:  # what the window opens on
-        preset, scene = "gold", scene or "studio"
+    preset = "gold" if preset is None else preset
     base = load(scene) if scene else State()
     if preset not in presets() and re.fullmatch(r"[\w-]*", preset) and not os.path.exists(preset):
         if preset in MODELS:
@@ -319,7 +320,7 @@ output_option = click.option("-o", "--output", required=True, metavar="FILE", he
 seconds_option = click.option("--time", "seconds", type=Number(0, 1e6), help="Most seconds to sample.")
 
 
-@main.command("open", cls=Flagged, sections=("material", "directions", "light", "look"))
+@main.command("open", cls=Flagged, sections=("material", "directions", "light", "look"), scene="studio")
 @click.argument("preset", required=False)
 @scene_option
 def open_(state, preset):

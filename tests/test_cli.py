@@ -270,6 +270,9 @@ def test_with_a_display_the_window_opens_on_the_preset(run, monkeypatch):
     assert [path for _, path in opened] == [None, None, "mine.toml", None, None]
     assert opened[0][0] == load("gold", load("studio"))
     assert opened[1][0].look.exposure == 2 and opened[1][0].material == load("gold").material
+    assert (
+        opened[1][0].light == load("studio").light and opened[3][0] == load("x.png") and opened[2][0] == load("chalk")
+    )
     assert opened[4][0].model.alpha == (0.5, 0.5)
 
 
