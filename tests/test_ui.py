@@ -110,6 +110,10 @@ def materials_are_copied_renamed_and_removed(user):
     user.item("//Material/###copy")
     assert len(user.state.materials) == 2 and user.state.active == 1
     assert user.state.materials[0].model == user.state.materials[1].model
+    first = user.state.materials[0].name
+    user.item("//Material/###copy")
+    assert [m.name for m in user.state.materials] == [first, f"{first} 2", f"{first} 3"]
+    user.item("//Material/$$2/###remove")
     user.item("//Material/$$1/###rename")
     user.ctx.key_chars_replace_enter("rough one")
     user.yield_()

@@ -1,5 +1,6 @@
 """The panels that show and change the state in words and numbers: material, scene, presets. Each maps state to state."""
 
+import itertools
 from dataclasses import replace
 from functools import cache, partial
 
@@ -96,14 +97,15 @@ def materials(state, memory):
         drawing = imgui.get_window_draw_list()
         drawing.add_circle_filled((a.x + points(13), (a.y + b.y) / 2), points(4.5), u32(curves[i % len(curves)]))
         top = (a.y + b.y - imgui.get_text_line_height()) / 2
-        drawing.push_clip_rect(a, (b.x - (2 * side if inside else points(8)), b.y), True)
+        buttons = inside or i == state.active
+        drawing.push_clip_rect(a, (b.x - (2 * side if buttons else points(8)), b.y), True)
         drawing.add_text((a.x + points(26), top), u32("ink"), material.name)
         model_at = a.x + points(26) + imgui.calc_text_size(material.name + "  ").x
         drawing.add_text(
             (model_at, top), u32("muted"), material.model.name() * (material.model.name() != material.name)
         )
         drawing.pop_clip_rect()
-        if inside or i == state.active:
+        if buttons:
             imgui.set_cursor_pos((start.x + size[0] - side * (1 + (len(state.materials) > 1)), start.y))
             if widgets.icon(icons.ICON_FA_PEN, "rename", faint=not inside):
                 memory["renaming"] = i
@@ -117,10 +119,20 @@ def materials(state, memory):
         if i >= len(state.materials) - 1:
             break
     if imgui.button(f"{icons.ICON_FA_PLUS}  Compare with a copy###copy", (imgui.get_content_region_avail().x, 0)):
-        copy = replace(state.material, name=f"{state.material.name} {len(state.materials) + 1}")
-        state = replace(state, materials=(*state.materials, copy), active=len(state.materials))
+        state = with_copy(state)
     widgets.hint("Add a copy of the active material", "The polar slice shows all materials over each other")
     return state
+
+
+def with_copy(state):
+    """The state with a copy of the active material, which is "Gold 2" after "Gold", and "Gold 3" after "Gold 2"."""
+    name, taken = state.material.name, {material.name for material in state.materials}
+    stem, _, last = name.rpartition(" ")
+    if not (stem and last.isdecimal() and len(last) < 3):  # not Alloy 7075
+        stem = name
+    number = next(n for n in itertools.count(2) if f"{stem} {n}" not in taken)
+    copy = replace(state.material, name=f"{stem} {number}")
+    return replace(state, materials=(*state.materials, copy), active=len(state.materials))
 
 
 def bar(name, chosen, size):
