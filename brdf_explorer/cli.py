@@ -514,7 +514,7 @@ def presets():
         if kind == "materials":
             about = f"{state.material.name}: {state.model.name()}, {', '.join(state.model.choices().values())}"
         else:
-            lights = [f"directional {state.light.irradiance:g}"] * (state.light.irradiance > 0)
+            lights = [f"directional ({state.light.irradiance:g} W/m2)"] * (state.light.irradiance > 0)
             lights += [state.light.environment] * (state.light.environment != "none")
             about = f"{' and '.join(lights) or 'no'} light, tone curve {state.look.tonemap}"
         rows.append((name, kind, about))

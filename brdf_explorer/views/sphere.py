@@ -7,6 +7,7 @@ import numpy as np
 from ..environment import environment
 from ..glsl import assemble, of_model
 from ..model import choice, param
+from .diagram import number
 from .picture import R2, Picture, View
 
 SIDES = 32  # of the polygon that disc.vert draws around the sphere
@@ -59,7 +60,8 @@ class Sphere(View):
                 noise = standard_error(mean, half) if half is not None else None
                 half = mean
             done = n == most or noise is not None and noise <= self.noise
-            note = f"{n} sample{'s' * (n > 1)} a pixel" + (f", noise {100 * noise:.2g} %" if noise is not None else "")
+            note = f"{n} sample{'s' * (n > 1)} a pixel"
+            note += f", noise {number(100 * noise, 2)} %" if noise is not None else ""
             shown = self.over_background(gpu, target, uniforms, textures)
             yield Picture(shown, linear=True, note=note, done=done)
             if done:
