@@ -360,9 +360,7 @@ def render(state, preset, view, size, scale, seconds, output):
     from .gpu import offscreen
 
     with offscreen() as gpu, progress() as show:
-        note = save_view(
-            gpu, state, view, output, size, scale, seconds, lambda picture: show(f"{view}: {picture.note}")
-        )
+        note = save_view(gpu, state, view, output, size, scale, seconds, lambda note: show(f"{view}: {note}"))
     click.echo(f"{output}: {size[0]} x {size[1]}{note and f', {note}'}")
 
 

@@ -21,7 +21,7 @@ from .measure.grid import angles
 from .model import Invalid
 from .state import LARGEST, State, dumps, replacing
 from .views.develop import develop
-from .views.diagram import QUANTITIES, number, powers_below
+from .views.drawing import Drawn, Fill, Raster
 from .views.picture import PALETTES, Label
 from .views.table import NODES, RAYS, table
 
@@ -87,18 +87,23 @@ def check_size(gpu, size):
 def save_view(gpu, state, view, path, size, scale=1.0, seconds=None, watch=None):
     """Write a view of the state in the format that the path's suffix names; its note, one line.
 
-    .png and .exr hold the picture; .svg, .pdf and .csv the curves, for views that have `slices`. Raises Invalid.
+    .png and .exr hold the picture; .svg and .pdf the drawing of a view that is one; .csv the curves of a view that has some.
+    watch(note) is called with the note of each picture that it got better by. Raises Invalid.
     """
     writers = dict(PICTURES)
-    if hasattr(state.views[view], "slices"):
+    if isinstance(state.views[view], Drawn):
+        writers |= DRAWINGS
+    if hasattr(state.views[view], "table_of"):
         writers |= CURVES
     write = writers[known_suffix(path, writers, f"a picture of {view}")]
     if write in PICTURES.values():
-        rendered = render(gpu, state, view, size, scale, seconds, watch)
+        rendered = render(gpu, state, view, size, scale, seconds, watch and (lambda picture: watch(picture.note)))
         write(rendered, path)
         return rendered.note
     check_size(gpu, size)
-    write(gpu, state, view, path, size)
+    if write in DRAWINGS.values():
+        return write(gpu, state, view, path, size, scale, seconds, watch)
+    write(gpu, state, view, path)
     return ""
 
 
@@ -179,14 +184,21 @@ def title(state, view):
 # --- curves ----------------------------------------------------------------------------------------------------------
 
 
-def write_plot(gpu, state, view, path, size):
-    """The slices of a view as a vector drawing by matplotlib, 1/72 inch a pixel of `size`."""
+def write_drawing(gpu, state, view, path, size, scale, seconds=None, watch=None):
+    """The drawing of a view as a vector file by matplotlib, 1/72 inch a pixel of `size`."""
+    start = time.monotonic()
+    for last in state.views[view].drawings(gpu, state, size, scale):
+        if watch:
+            watch(last[1])
+        if seconds is not None and time.monotonic() - start >= seconds:
+            break
+    drawing, note, _ = last
     with matplotlib_style(state.look.theme), replacing(path) as temporary:
-        figure = plot(state, state.views[view], state.views[view].slices(gpu, state), size)
         metadata = {"Title": title(state, view), "Creator": SOFTWARE}
         # no date: the same state gives the same file
         metadata |= {"Description": dumps(state), "Date": None} if path_is(path, ".svg") else {"CreationDate": None}
-        figure.savefig(temporary, format=Path(path).suffix[1:].lower(), metadata=metadata)
+        figure_of(gpu, drawing).savefig(temporary, format=Path(path).suffix[1:].lower(), metadata=metadata)
+    return note
 
 
 def path_is(path, suffix):
@@ -195,67 +207,49 @@ def path_is(path, suffix):
 
 @contextmanager
 def matplotlib_style(theme):
-    """matplotlib with the window's font and the theme's colours."""
+    """matplotlib with the window's font and the theme's paper."""
     import matplotlib
     from matplotlib import font_manager
 
-    colors = PALETTES[theme]
     font_manager.fontManager.addfont(str(font_path()))
-    style = dict.fromkeys(("text.color", "axes.labelcolor"), colors["ink"])
-    style |= dict.fromkeys(("xtick.color", "ytick.color", "axes.edgecolor"), colors["muted"])
-    style |= {"figure.facecolor": colors["paper"], "axes.facecolor": colors["paper"], "grid.color": colors["grid"]}
-    style |= {"font.family": ["Roboto", "DejaVu Sans"], "font.size": 11, "axes.grid": True, "grid.linewidth": 0.8}
-    style |= {"svg.hashsalt": KEY, "legend.frameon": False, "text.parse_math": False}
+    style = {"figure.facecolor": PALETTES[theme]["paper"], "font.family": ["Roboto", "DejaVu Sans"]}
+    style |= {"svg.hashsalt": KEY, "text.parse_math": False}
     with matplotlib.rc_context(style), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing")  # a name in another script shows boxes
         yield
 
 
-def plot(state, view, slices, size):
-    """matplotlib's figure of a slice through the plane of incidence: half a disc, the normal upward."""
+def figure_of(gpu, drawing):
+    """matplotlib's figure of a Drawing, a unit a pixel."""
     from matplotlib.figure import Figure
-    from matplotlib.ticker import FuncFormatter, MaxNLocator
+    from matplotlib.patches import Rectangle
 
-    colors = PALETTES[state.look.theme]
-    figure = Figure(figsize=(size[0] / 72, size[1] / 72), layout="constrained")
-    axes = figure.add_subplot(projection="polar", theta_offset=np.pi / 2, theta_direction=-1)
-    axes.set_thetalim(-np.pi / 2, np.pi / 2)
-    axes.set_xticks(
-        np.radians(np.arange(-90, 91, 15)), [f"{abs(a)}°" if a % 30 == 0 else "" for a in range(-90, 91, 15)]
-    )
-    peak = max(float(np.max(f32)) for *_, f32, _ in slices)
-    top = 1.04 * peak if peak > 0 else 1.0
-
-    if view.radius == "log":
-        low, high = np.log10(top) - view.decades, np.log10(top)
-        rings = np.log10(powers_below(top, view.decades))
-
-        def reach(values):
-            return np.log10(np.maximum(values, 10**low))
-    else:
-        low, high = 0.0, top
-        rings = MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(0, top)[1:]
-
-        def reach(values):
-            return values
-
-    rings = rings[(rings > low) & (rings <= high)]
-    for name, key, theta, f32, _ in slices:  # labels begin with a space, as matplotlib hides those that begin with _
-        color = colors.get(key) or colors["curves"][key % len(colors["curves"])]
-        axes.plot(theta, reach(f32), color=color, linewidth=2.4, label=f" {legible(name)}")
-    if view.reference == "on":
-        for i, (_, _, theta, _, f64) in enumerate(slices):
-            axes.plot(theta, reach(f64), color=colors["reference"], linewidth=0.8, label="" if i else " float64")
-    theta_o = np.radians(state.directions.theta_o)
-    axes.annotate("", (theta_o, high), (theta_o, low), arrowprops={"arrowstyle": "->", "color": colors["accent"]})
-    axes.text(theta_o, low + 1.08 * (high - low), "ωo", color=colors["accent"], ha="center", va="center")
-    axes.plot([-theta_o, -theta_o], [low, high], color=colors["accent"], linewidth=1, linestyle=(0, (4, 4)))
-    axes.set_rorigin(low)
-    axes.set_rlim(low, high)
-    axes.set_yticks(rings)
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda r, _: number(10**r if view.radius == "log" else r)))
-    axes.tick_params(axis="y", labelsize=9)
-    figure.legend(title=QUANTITIES[view.quantity], loc="upper left", alignment="left")
+    width, height = drawing.size
+    figure = Figure(figsize=(width / 72, height / 72))
+    axes = figure.add_axes((0, 0, 1, 1), xlim=(0, width), ylim=(0, height))
+    axes.set_axis_off()
+    for order, (_, item) in enumerate(drawing.items):
+        if isinstance(item, Fill):
+            left, bottom, right, top = item.box
+            corner = (left, bottom)
+            axes.add_patch(Rectangle(corner, right - left, top - bottom, color=item.color, linewidth=0, zorder=order))
+        elif isinstance(item, Raster):
+            (left, bottom), (right, top) = item.corner, np.add(item.corner, item.target.size)
+            extent = (left, right, bottom, top)
+            axes.imshow(gpu.pixels(item.target)[..., :3], extent=extent, interpolation="none", zorder=order)
+        else:
+            look = {"color": item.color, "alpha": item.opacity, "linewidth": item.width}
+            axes.plot(*item.points.T, **look, solid_capstyle="round", solid_joinstyle="round", zorder=order)
+    axes.set(xlim=(0, width), ylim=(0, height), aspect="auto")  # as imshow may have changed them
+    ascent, descent = font(1000.0).getmetrics()
+    for label in drawing.labels:
+        line = label.size * drawing.scale
+        baseline = height - label.y + (label.anchor[1] - ascent / (ascent + descent)) * line
+        side = ("left", "center", "right")[round(2 * label.anchor[0])]
+        size = font(line).size  # of an em
+        axes.text(
+            label.x, baseline, legible(label.text), color=label.color, size=size, ha=side, va="baseline", zorder=1e6
+        )
     return figure
 
 
@@ -264,7 +258,7 @@ def legible(name):
     return "".join(c if c.isprintable() else " " for c in name)
 
 
-def write_curves(gpu, state, view, path, size=None):
+def write_curves(gpu, state, view, path):
     """The curves of a view as CSV: the axis, then float32 and float64 values of each."""
     curves = state.views[view].table_of(gpu, state)
     write_csv(path, state, [title(state, view)], {curves.x_name: curves.x, **curves.y})
@@ -326,7 +320,8 @@ def write_table_exr(path, state, about, columns):
 
 
 PICTURES = {".png": write_png, ".exr": write_exr}
-CURVES = {".svg": write_plot, ".pdf": write_plot, ".csv": write_curves}
+DRAWINGS = {".svg": write_drawing, ".pdf": write_drawing}
+CURVES = {".csv": write_curves}
 TABLES = {".csv": write_table_csv, ".npz": write_table_npz, ".exr": write_table_exr}
 
 

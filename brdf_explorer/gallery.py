@@ -7,6 +7,7 @@ from . import __version__
 from .export import render, title, write_png
 from .model import Invalid
 from .state import load, presets, replacing, save
+from .views import VIEWS
 
 SCALE = 1.3  # pixels a point: the page shows pictures smaller than they are
 STYLE = """
@@ -58,12 +59,13 @@ def save_gallery(gpu, states, folder, size, seconds=None):
     except OSError as error:
         raise Invalid(f"{folder}: cannot make this folder: {error.strerror}") from None
     names = unique([Path(name).stem for name, _ in states])
-    total = sum(len(state.views) for _, state in states)
+    views = [name for name, view in VIEWS.items() if not view.instrument]
+    total = len(views) * len(states)
     done = 0
     sections, links = [], []
     for name, (_, state) in zip(names, states, strict=True):
         pictures = {}
-        for view in state.views:
+        for view in views:
             done += 1
             yield done, total, title(state, view)
             pictures[view] = f"{name}-{view}.png"

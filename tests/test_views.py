@@ -15,8 +15,10 @@ from brdf_explorer.measure.grid import direction
 from brdf_explorer.model import Invalid
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Directions, Light, Look, Material, State
+from brdf_explorer.ui.gestures import linked
 from brdf_explorer.views import VIEWS
 from brdf_explorer.views.develop import develop
+from brdf_explorer.views.drawing import Drawing
 from brdf_explorer.views.picture import PALETTES, Picture, rgb
 from brdf_explorer.views.sphere import toward
 from brdf_explorer.views.table import table
@@ -186,3 +188,20 @@ def test_legend_of_the_slice_names_every_curve_that_has_room(gpu, theta_o):
     assert all(any(w[:6] == name[:6] for w in words(420, 320)) for name in names)
     assert any(w.startswith("+ ") and w.endswith(" more") for w in words(280, 210))
     assert not set(names) & set(words(200, 150))
+
+
+def test_a_drawing_draws_fills_lines_and_pictures_in_order(gpu):
+    inner = gpu.target("test raster", (20, 10), 4, "f1")
+    inner.clear(0.0, 0.0, 1.0, 1.0)
+    drawing = Drawing((100, 60), theme="light")
+    drawing.fill((10, 10, 60, 50), "#ff0000")
+    drawing.raster((20, 20), inner)
+    drawing.stroke([(0, 25), (100, 25)], "#00ff00", 4.0)
+    drawing.text("words", (50, 55), "muted")
+    drawing.link((10, 10, 60, 50), "tip", State())
+    picture = drawing.picture(gpu, "test")
+    pixels = gpu.pixels(picture.target)[..., :3]
+    assert pixels[59 - 45, 15].tolist() == [255, 0, 0] and pixels[59 - 28, 30].tolist() == [0, 0, 255]
+    assert pixels[59 - 25, 15].tolist() == [0, 255, 0] and pixels[59 - 55, 80].tolist() == [255, 255, 255]
+    assert (picture.labels[0].x, picture.labels[0].y) == (50, 5)
+    assert linked(picture.links, (30, 20)).state == State() and linked(picture.links, (30, 5)) is None

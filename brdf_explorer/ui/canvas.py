@@ -106,10 +106,15 @@ class Canvas:
         """The state after this frame's drag or wheel on the picture."""
         io = imgui.get_io()
         hovered = imgui.is_item_hovered()
-        if hovered or imgui.is_item_active():
-            imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
         at = ((io.mouse_pos.x - origin.x) * pixel, (io.mouse_pos.y - origin.y) * pixel)
         delta = (io.mouse_delta.x * pixel, io.mouse_delta.y * pixel)
+        link = hovered and self.picture and gestures.linked(self.picture.links, at)
+        if link and link.tip:
+            widgets.hint(*link.tip.split("\n"))
+        if (hovered or imgui.is_item_active()) and (link and link.state or self.name in gestures.DRAGGED):
+            imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
+        if link and link.state and imgui.is_item_clicked():
+            return link.state
         moved = imgui.is_item_activated() or any(delta)
         if imgui.is_item_active() and moved:
             if self.name == "sphere" and state.light.irradiance > 0:

@@ -5,7 +5,14 @@ from dataclasses import replace
 
 from ..model import declared
 
+DRAGGED = ("sphere", "lobe", "polar")  # views that a drag changes
 ORBIT = 0.4  # degrees that a point of drag turns a camera or an environment
+
+
+def linked(links, at):
+    """The last of the links that are under the mouse, or None."""
+    x, y = at
+    return next((k for k in reversed(links) if k.box[0] <= x <= k.box[2] and k.box[1] <= y <= k.box[3]), None)
 
 
 def light(state, view, at, size):

@@ -60,12 +60,25 @@ class Label:
     size: float = 13.0  # height in points; a picture's scale turns points into pixels
 
 
+@dataclass(frozen=True)
+class Link:
+    """A place in a picture that reacts to the mouse. box: left, top, right, bottom in pixels from the top left.
+
+    tip shows while the mouse is there, line by line; a click makes `state` the current one, if there is one.
+    """
+
+    box: tuple[float, float, float, float]
+    tip: str
+    state: object = None
+
+
 @dataclass
 class Picture:
     """A picture on the GPU, drawn once or getting better from one to the next.
 
     target  framebuffer: scene-linear RGB and coverage (float32) if `linear`, else sRGB colours (8 bits)
     labels  texts to draw over it, for which it left room
+    links   places that react to the mouse; where they overlap the last does
     note    one line about the picture, such as its sample count
     done    whether the next one would be the same
     """
@@ -73,6 +86,7 @@ class Picture:
     target: object
     linear: bool = False
     labels: list[Label] = field(default_factory=list)
+    links: list[Link] = field(default_factory=list)
     note: str = ""
     done: bool = True
 
@@ -90,6 +104,7 @@ class View(Declared):
     """What to draw, no widgets. A frozen dataclass whose fields are its options; the module's name is its name."""
 
     title: ClassVar[str] = ""
+    instrument: ClassVar[bool] = False  # measures when it is asked to, rather than shows a material
 
     def shows(self, state):
         """The values that its picture depends on; while they stay equal, so does the picture."""

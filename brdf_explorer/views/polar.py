@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..lib.srgb import luminance
+from ..measure.grid import direction
 from ..model import choice
 from .diagram import QUANTITIES, Diagram, apart, arrow, nice_step, number, powers_below, radius
-from .lines import Stroke, draw_lines
-from .picture import PALETTES, Curves, Label, Picture, rgb
+from .drawing import Drawing, Drawn
+from .picture import Curves
 from .table import table
 
 MARGIN = 44  # points around the half disc, for the angles
@@ -16,11 +17,12 @@ FOOT = 46  # points below it, for values and a note
 NODES = 385  # of each half of a slice: many more than the lobe has, so that no tip has corners in a large picture
 LINE = 18  # points from one line of the legend to the next
 LETTER = 5.6  # points that a letter of the legend takes, on average
+CHANNELS = ("red", "green", "blue")
 LETTERS = 10  # that a line of the legend has room for at least
 
 
 @dataclass(frozen=True)
-class Polar(Diagram):
+class Polar(Drawn, Diagram):
     """The slice through the plane of incidence: f or f cos over the direction to the light, as a polar plot."""
 
     title = "Polar slice"
@@ -31,8 +33,11 @@ class Polar(Diagram):
     reference: str = choice("on", ("on", "off"), "float64 values as a thin line over the shader's float32 ones")
 
     def shows(self, state):
-        materials = state.materials if self.curves == "materials" else (state.material,)
-        return (self, materials, state.directions, state.look.theme)
+        return (self, self.materials(state), state.directions, state.look.theme)
+
+    def materials(self, state):
+        """The materials that have curves."""
+        return state.materials if self.curves == "materials" else (state.material,)
 
     def disc(self, size, scale=1.0):
         """Centre (2,) of the half disc in a picture of that size, pixels from the bottom left, and its radius."""
@@ -43,41 +48,45 @@ class Polar(Diagram):
     @np.errstate(under="ignore")  # in the tails of a density
     def slices(self, gpu, state):
         """[(name, colour role or number, theta (n,), float32 values (n,), float64 values (n,))] of each curve."""
-        materials = state.materials if self.curves == "materials" else (state.material,)
         found = []
-        for index, material in enumerate(materials):
+        for index, material in enumerate(self.materials(state)):
             t = table(gpu, material.model, state.directions, rays=2, nodes=NODES)
             theta, wi, f32 = t.plane()
             f64 = material.model.f(t.wo, wi)
             cos = self.factor(wi)
             if self.curves == "rgb":
-                for c, channel in enumerate(("red", "green", "blue")):
+                for c, channel in enumerate(CHANNELS):
                     found.append((channel, channel, theta, f32[:, c] * cos, f64[:, c] * cos))
             else:
                 found.append((material.name, index, theta, luminance(f32) * cos, luminance(f64) * cos))
         return found
 
+    @np.errstate(under="ignore")
     def table_of(self, gpu, state):
-        """The slices as Curves over theta in degrees; those of several materials are resampled to the finest one."""
+        """The slices as Curves over theta in degrees, each evaluated at every angle that the grid of one of them has."""
         slices = self.slices(gpu, state)
         x = np.unique(np.concatenate([s[2] for s in slices]))
+        phi = np.radians(state.directions.phi_o)
+        wo, wi = direction(np.radians(state.directions.theta_o), phi), direction(x, phi)
         y = {}
-        for name, _, theta, f32, f64 in slices:
-            y[f"{name} float32"] = np.interp(x, theta, f32)
-            y[f"{name} float64"] = np.interp(x, theta, f64)
+        for material in self.materials(state):
+            for kind, f in (("float32", gpu.f(material.model, wo, wi)), ("float64", material.model.f(wo, wi))):
+                f = f * np.reshape(self.factor(wi), (-1, 1))
+                if self.curves == "rgb":
+                    y |= {f"{channel} {kind}": f[:, c] for c, channel in enumerate(CHANNELS)}
+                else:
+                    y[f"{material.name} {kind}"] = luminance(f)
         return Curves("theta_i [deg]", np.degrees(x), y)
 
-    def pictures(self, gpu, state, size, scale=1.0):
-        colors = PALETTES[state.look.theme]
+    def drawings(self, gpu, state, size, scale=1.0):
+        draw = Drawing(size, scale, state.look.theme)
+        colors = draw.colors
         width, height = size
-        target = gpu.target("polar", size, 4, "f1")
-        target.clear(*rgb(colors["paper"]), 1.0)
         slices = self.slices(gpu, state)
         peak = max(float(np.max(s[3])) for s in slices)
         top = 1.04 * peak if peak > 0 else 1.0
         center, extent = self.disc(size, scale)
         theta_o = np.radians(state.directions.theta_o)
-        labels = []
 
         def place(theta, share):
             theta, share = np.broadcast_arrays(theta, share)
@@ -87,10 +96,7 @@ class Polar(Diagram):
             return radius(values / top, self.radius, self.decades)
 
         def stroke(theta, share, color, points):
-            return Stroke(place(theta, share), colors.get(color, color), points * scale)
-
-        def text(words, at, color, anchor=(0.5, 0.5), points=12.0):
-            labels.append(Label(words, float(at[0]), height - float(at[1]), colors.get(color, color), anchor, points))
+            draw.stroke(place(theta, share), color, points)
 
         if self.radius == "linear":
             step = nice_step(top / 4)
@@ -100,38 +106,42 @@ class Polar(Diagram):
         rings = rings[reach(rings) > 0.08]
         arc = np.linspace(-np.pi / 2, np.pi / 2, 181)
         spokes = np.radians(np.arange(-90, 91, 15))
-        strokes = [stroke(arc, r, "grid", 1.0) for r in reach(rings)]
-        strokes += [stroke(a, np.array([0.0, 1.0]), "grid", 1.0) for a in spokes]
-        strokes.append(stroke(arc, 1.0, "muted", 1.0))
-        strokes.append(stroke(np.array([-np.pi / 2, np.pi / 2]), 1.0, "ink", 1.2))
+        for r in reach(rings):
+            stroke(arc, r, "grid", 1.0)
+        for a in spokes:
+            stroke(a, np.array([0.0, 1.0]), "grid", 1.0)
+        stroke(arc, 1.0, "muted", 1.0)
+        stroke(np.array([-np.pi / 2, np.pi / 2]), 1.0, "ink", 1.2)
         viewer = place(theta_o, 1 + 34 * scale / extent)
         for a in spokes[::2]:
             at = place(a, 1 + 17 * scale / extent)
             if np.any(np.abs(at - viewer) > np.array([20, 12]) * scale):
-                text(f"{abs(round(np.degrees(a)))}°", at, "muted")
+                draw.text(f"{abs(round(np.degrees(a)))}°", at, "muted")
         words = [number(value) for value in rings]
         for i in apart(extent * reach(rings), [(5.5 * len(w) + 4) * scale for w in words]):
-            text(words[i], place(np.pi / 2, reach(rings[i])) - [0, 12 * scale], "muted", points=11.0)
+            draw.text(words[i], place(np.pi / 2, reach(rings[i])) - [0, 12 * scale], "muted", size=11.0)
 
         # the viewer, and dashed where a mirror would send its ray
-        strokes += [Stroke(p, colors["accent"], 1.6 * scale) for p in arrow(center, place(theta_o, 1.0), scale)]
-        strokes += [stroke(-theta_o, np.array([i, i + 1]) / 40, "accent", 1.0) for i in range(0, 40, 2)]
-        text("ωo", viewer, "accent", points=13.0)
+        for points in arrow(center, place(theta_o, 1.0), scale):
+            draw.stroke(points, "accent", 1.6)
+        for i in range(0, 40, 2):
+            stroke(-theta_o, np.array([i, i + 1]) / 40, "accent", 1.0)
+        draw.text("ωo", viewer, "accent", size=13.0)
 
         legend = [(QUANTITIES[self.quantity], "ink")]
         for name, key, theta, f32, _ in slices:
             color = key if self.curves == "rgb" else colors["curves"][key % len(colors["curves"])]
-            strokes.append(stroke(theta, reach(f32), color, 4.0))
+            stroke(theta, reach(f32), color, 4.0)
             legend.append((name, color))
-        draw_lines(gpu, target, strokes)
+        draw.over()
         if self.reference == "on":
-            draw_lines(gpu, target, [stroke(theta, reach(f64), "reference", 1.0) for _, _, theta, _, f64 in slices])
+            for _, _, theta, _, f64 in slices:
+                stroke(theta, reach(f64), "reference", 1.0)
             legend.append(("float64", "reference"))
         for words, color, side, y in self.columns(legend, size, scale):
             x = 12 * scale if side == "left" else width - 12 * scale
-            text(words, (x, height - y), color, (0.0 if side == "left" else 1.0, 0.5), 12.5)
-        note = f"peak {number(peak, 4)} / sr at θo = {state.directions.theta_o:g}°"
-        yield Picture(target, labels=labels, note=note)
+            draw.text(words, (x, height - y), color, (0.0 if side == "left" else 1.0, 0.5), 12.5)
+        yield draw, f"peak {number(peak, 4)} / sr at θo = {state.directions.theta_o:g}°", True
 
     def columns(self, legend, size, scale):
         """The legend [(words, colour)] in the upper corners, clear of angles and viewer: [(words, colour, side, y from the top)].

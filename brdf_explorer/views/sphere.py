@@ -21,8 +21,8 @@ class Sphere(View):
     title = "Sphere"
 
     background: str = choice("plain", ("plain", "environment"), "what lies behind the sphere")
-    noise: float = param(0.01, 0.001, 0.1, "standard error of a pixel, over the mean, that ends sampling", scale="log")
-    samples: int = param(1024, 16, 65536, "most samples a pixel", scale="log")
+    samples: int = param(1024, 1, 65536, "most samples a pixel", scale="log")
+    noise: float = param(0.01, 1e-6, 0.1, "standard error of a pixel, over the mean, that ends sampling", scale="log")
 
     def shows(self, state):
         return (self, state.model, state.light)

@@ -1,0 +1,105 @@
+"""Ladders: the questions that have several methods for an answer, each with its methods from the cheapest to the reference.
+
+The speed-accuracy chart, the stability map and the advice on the least sufficient method walk along them. A new method joins
+by a line here, a new question by one Ladder in LADDERS.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from .model import Choice, declared
+
+
+def within(state):
+    return ""
+
+
+@dataclass(frozen=True)
+class Method:
+    """An answer. changes: the parameters of the ladder's section that choose it; None: in float64 by numpy, not in a shader.
+
+    outside(state): why the method leaves its domain there, in a few words, or "".
+    """
+
+    name: str
+    changes: dict | None
+    outside: Callable = within
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """A question with its methods, the last of which is the reference, unless it is outside its domain.
+
+    section   what the methods change: "material", or the name of a view
+    measures  what a method is judged by: "f", its values; "samples", the spread of its weights; "picture", the sphere's
+    applies   whether the question arises for a state
+    """
+
+    name: str
+    question: str
+    section: str
+    measures: str
+    methods: tuple[Method, ...]
+    applies: Callable
+
+    def reference(self, state):
+        """The most accurate method for a state: the last that is within its domain."""
+        return next(m for m in reversed(self.methods) if not m.outside(state))
+
+    def at(self, state, method):
+        """The state with a method of this ladder in use."""
+        if self.section == "material":
+            return state.with_model(replace(state.model, **(method.changes or {})))
+        return state.with_view(self.section, **(method.changes or {}))
+
+    def current(self, state):
+        """The method that a state uses, or None if it is none of these."""
+        at = state.model if self.section == "material" else state.views[self.section]
+        return next(
+            (m for m in self.methods if m.changes and all(getattr(at, k, None) == v for k, v in m.changes.items())),
+            None,
+        )
+
+
+def of_choice(name, question, measures, options, applies=None, outside=None):
+    """The Ladder of a choice of that name among a model's, its options from the cheapest to the reference."""
+
+    def has(state):
+        return name in declared(state.model, Choice) and (applies is None or applies(state.model))
+
+    outside = outside or {}
+    methods = tuple(Method(o, {name: o}, outside.get(o, within)) for o in options)
+    return Ladder(name, question, "material", measures, methods, has)
+
+
+def absorbs(state):
+    return "k is not 0" if max(state.model.k) > 0 else ""
+
+
+LADDERS = {
+    ladder.name: ladder
+    for ladder in (
+        of_choice(
+            "smith",
+            "How exact must Smith's Lambda of Beckmann be?",
+            "f",
+            ("rational", "exact"),
+            applies=lambda model: model.ndf == "beckmann",
+        ),
+        of_choice(
+            "shadowing",
+            "How do masking and shadowing combine?",
+            "f",
+            ("none", "separable", "full", "directional", "correlated"),
+        ),
+        of_choice(
+            "fresnel",
+            "How exact must the reflectance of a facet be?",
+            "f",
+            ("schlick", "dielectric", "conductor"),
+            applies=lambda model: model.fresnel != "one",
+            outside={"dielectric": absorbs},
+        ),
+    )
+}
+"""The ladders by name."""

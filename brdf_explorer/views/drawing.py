@@ -1,0 +1,115 @@
+"""A diagram as data: fills, lines, pictures and texts in order, which a window draws and a vector file holds."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+
+from ..glsl import assemble
+from .lines import Stroke, draw_lines
+from .picture import PALETTES, Label, Link, Picture, View, rgb
+
+
+@dataclass(frozen=True)
+class Fill:
+    """A rectangle of one colour. box: left, bottom, right, top in pixels from the bottom left; color: "#rrggbb"."""
+
+    box: tuple[float, float, float, float]
+    color: str
+
+
+@dataclass(frozen=True)
+class Raster:
+    """A framebuffer of sRGB colours (8 bits), drawn pixel by pixel with its lower left corner at `corner`, in whole pixels."""
+
+    corner: tuple[int, int]
+    target: object
+
+
+class Drawing:
+    """What a view drew so far. Coordinates are pixels from the bottom left, lengths points; colours are roles or "#rrggbb".
+
+    items   Fill, Raster and Stroke, the later over the earlier; neighbouring strokes are one pass, in which the one that
+            covers more of a pixel shows: `over` begins another
+    labels  texts, over all items
+    links   places that react to a click
+    """
+
+    def __init__(self, size, scale=1.0, theme="light"):
+        self.size, self.scale, self.theme = size, scale, theme
+        self.colors = PALETTES[theme]
+        self.items, self.labels, self.links = [], [], []
+        self.passes = 0
+
+    def color(self, role):
+        return self.colors.get(role, role)
+
+    def over(self):
+        """What follows is drawn over what there is, joints and crossings too."""
+        self.passes += 1
+
+    def fill(self, box, color):
+        self.items.append((self.passes, Fill(tuple(map(float, box)), self.color(color))))
+
+    def stroke(self, points, color, width=1.0, opacity=1.0):
+        """A polyline through points (n, 2), `width` points wide, with round ends."""
+        points = np.asarray(points, dtype=float)
+        self.items.append((self.passes, Stroke(points, self.color(color), width * self.scale, opacity)))
+
+    def dot(self, at, color, diameter, opacity=1.0):
+        """A disc about `at` (2,), its diameter in points."""
+        self.stroke([at, at], color, diameter, opacity)
+
+    def raster(self, corner, target):
+        self.items.append((self.passes, Raster((round(corner[0]), round(corner[1])), target)))
+
+    def text(self, words, at, color="ink", anchor=(0.5, 0.5), size=12.0):
+        """A line of text; anchor: the share of it left of and above `at`; size: its height in points."""
+        x, y = float(at[0]), self.size[1] - float(at[1])
+        self.labels.append(Label(words, x, y, self.color(color), anchor, size))
+
+    def link(self, box, tip, state=None):
+        """A place that shows `tip` under the mouse, and that a click makes `state` the current one, if given."""
+        left, bottom, right, top = map(float, box)
+        self.links.append(Link((left, self.size[1] - top, right, self.size[1] - bottom), tip, state))
+
+    def picture(self, gpu, name, note="", done=True):
+        """The Picture of all this, in the target of that name."""
+        target = gpu.target(name, self.size, 4, "f1")
+        target.clear(*rgb(self.colors["paper"]), 1.0)
+        for (_, kind), group in groupby(self.items, key=lambda item: (item[0], type(item[1]))):
+            items = [item for _, item in group]
+            if kind is Stroke:
+                draw_lines(gpu, target, items)
+                continue
+            for item in items:
+                if kind is Fill:
+                    left, bottom, right, top = (
+                        np.clip(np.round(item.box), 0, [*self.size, *self.size]).astype(int).tolist()
+                    )
+                    if right > left and top > bottom:
+                        target.clear(*rgb(item.color), 1.0, viewport=(left, bottom, right - left, top - bottom))
+                else:
+                    draw_raster(gpu, target, item)
+        return Picture(target, labels=self.labels, links=self.links, note=note, done=done)
+
+
+def draw_raster(gpu, target, raster):
+    left, bottom = raster.corner
+    width, height = raster.target.size
+    program = gpu.program(assemble("views/raster.frag"))
+    picture = {"picture": raster.target.color_attachments[0]}
+    gpu.draw(program, target, {"corner": raster.corner}, picture, box=(left, bottom, left + width, bottom + height))
+
+
+class Drawn(View):
+    """A view whose pictures are drawings, which a vector file can hold."""
+
+    def drawings(self, gpu, state, size, scale=1.0) -> Iterator[tuple[Drawing, str, bool]]:
+        """Drawings of the state, from the first to the best, each with its note and whether it is the last."""
+        raise NotImplementedError
+
+    def pictures(self, gpu, state, size, scale=1.0):
+        for drawing, note, done in self.drawings(gpu, state, size, scale):
+            yield drawing.picture(gpu, self.name(), note, done)

@@ -1,0 +1,33 @@
+"""Ladders are true to the models they are about."""
+
+import pytest
+
+from brdf_explorer.ladder import LADDERS
+from brdf_explorer.model import declared
+from brdf_explorer.models import MODELS
+from brdf_explorer.state import Material, State
+
+STATES = [State((Material("", MODELS["microfacet"](ndf=ndf, k=k)),)) for ndf in ("ggx", "beckmann") for k in (0.0, 3.0)]
+
+
+@pytest.mark.parametrize("ladder", LADDERS.values(), ids=LADDERS)
+def test_every_method_can_be_chosen_and_is_recognised(ladder):
+    for state in (s for s in STATES if ladder.applies(s)):
+        for method in ladder.methods:
+            if method.changes is not None:
+                assert ladder.current(ladder.at(state, method)) is method
+        assert not ladder.reference(state).outside(state)
+    assert any(ladder.applies(state) for state in STATES)
+
+
+def test_ladders_of_choices_name_every_option():
+    """A new option joins its ladder, or is `one`, which is not an answer to the ladder's question."""
+    for name in ("smith", "shadowing", "fresnel"):
+        options = {o for model in MODELS.values() for n, d in declared(model).items() if n == name for o in d.options}
+        assert {m.name for m in LADDERS[name].methods} == options - {"one"}
+
+
+def test_reference_follows_the_domain():
+    ladder = LADDERS["fresnel"]
+    (dielectric,) = (m for m in ladder.methods if m.name == "dielectric")
+    assert [dielectric.outside(s) != "" for s in STATES] == [False, True, False, True]
