@@ -2,13 +2,13 @@
 
 import subprocess
 import sys
-import time
 from dataclasses import dataclass
 
 import numpy as np
 
 from .glsl import assemble, of_model
 from .gpu import offscreen
+from .measure.cost import interleaved
 from .state import State
 
 SIZE = (1024, 1024)
@@ -58,20 +58,6 @@ class Figure:
     @property
     def ok(self):
         return self.limit is None or self.median <= self.limit
-
-
-def interleaved(runs, repeats):
-    """Seconds (repeats,) of each named run, taken in turns so that drift of the machine meets all alike."""
-    for run in runs.values():
-        run()
-        run()
-    times = {name: [] for name in runs}
-    for _ in range(repeats):
-        for name, run in runs.items():
-            start = time.perf_counter()
-            run()
-            times[name].append(time.perf_counter() - start)
-    return {name: np.array(t) for name, t in times.items()}
 
 
 def figure(name, samples, unit="", limit=None):

@@ -112,6 +112,8 @@ class Gpu:
         self.buffers = {}
         self.arrays = {}
         self.environment = None
+        self.drawn = set()  # (program, size, format) of draws, for measure/cost.py, which empties it before some work
+        self.costs = {}  # measured there
 
     @property
     def device(self):
@@ -187,6 +189,7 @@ class Gpu:
         key = (program, index)
         if key not in self.arrays:
             self.arrays[key] = self.ctx.vertex_array(program, [], index_buffer=index)
+        self.drawn.add((program, target.size, target.color_attachments[0].dtype))
         ctx = self.ctx
         self.collect()
         ctx.enable_only((moderngl.BLEND if blend else 0) | (moderngl.DEPTH_TEST if depth else 0))
