@@ -46,7 +46,7 @@ def integral(function, wo, alpha, tolerance=1e-10, most=512):
         return Integral(zero, zero)
     n, before, difference, envelope = 32, None, 1.0, 0.0
     while True:
-        g, weight = _quadrature(wo, alpha, n)
+        g, weight = quadrature(wo, alpha, n)
         with np.errstate(under="ignore"):  # in the tails of a density
             value = np.einsum("ptc,pt->c", function(wo, g.wi), weight)
         if before is not None:
@@ -58,7 +58,8 @@ def integral(function, wo, alpha, tolerance=1e-10, most=512):
         before, n = value, 2 * n
 
 
-def _quadrature(wo, alpha, n):
+def quadrature(wo, alpha, n):
+    """The Grid of n rays of n directions for one viewer wo (3,), and the solid angle that each stands for, sr (n, n)."""
     t, dt = gauss(n)
     psi, turn = spread(wo, alpha, (np.arange(n) + 0.5) / n)
     g = grid(wo, alpha, t, psi)
