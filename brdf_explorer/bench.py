@@ -129,7 +129,9 @@ def starting(processes):
     }
     if linux:  # elsewhere glfw's null platform has no OpenGL
         runs["frame"] = run(OPENED.format(until="True"))
-        runs["pictures"] = run(OPENED.format(until="all(canvas.shown for canvas in window.canvases.values())"))
+        runs["pictures"] = run(
+            OPENED.format(until="all(window.canvases[name].shown for name in ('sphere', 'lobe', 'polar'))")
+        )
     times = interleaved(runs, processes)
     yield figure("import of the package over numpy", times["package"] - times["numpy"], "s", limit=0.1)
     yield figure("imports of numpy, moderngl, imgui_bundle and a context", times["bare"], "s")

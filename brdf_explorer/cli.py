@@ -344,7 +344,7 @@ def open_(state, preset):
 @main.command(cls=Flagged, sections=("material", "directions", "light", "look", "view"))
 @preset_argument
 @scene_option
-@click.option("--view", type=ViewName(), default="sphere", show_default=True, help="What to draw: sphere, lobe, polar.")
+@click.option("--view", type=ViewName(), default="sphere", show_default=True, help="What to draw, such as lobe.")
 @click.option("--size", type=Size(), default="512x512", show_default=True, help="Pixels.")
 @click.option(
     "--scale", type=Number(0.25, 16), default=1.0, show_default=True, help="Pixels a point of lines and text."

@@ -40,6 +40,8 @@ SCREENS = {
     "lobe-dark-log": ("lobe", state("copper", theme="dark").with_view("lobe", radius="log", quantity="f_cos")),
     "lobe-sharp": ("lobe", State((NARROW,)).with_view("lobe", zoom=2.0)),
     "lobe-anisotropic": ("lobe", at(BRUSHED, theta_o=65.0, phi_o=30.0).with_view("lobe", azimuth=20.0, elevation=50.0)),
+    "factors-light": ("factors", state("gold")),
+    "factors-dark": ("factors", at(state("chrome", theme="dark"), theta_o=70.0).with_view("factors", axis="linear")),
     "polar-light": ("polar", state("gold").with_view("polar", curves="rgb")),
     "polar-dark-log": (
         "polar",

@@ -14,7 +14,7 @@ from brdf_explorer.measure import albedo
 from brdf_explorer.measure.grid import direction
 from brdf_explorer.model import Invalid
 from brdf_explorer.models import MODELS
-from brdf_explorer.state import Directions, Light, Look, Material, State
+from brdf_explorer.state import Directions, Light, Look, Material, State, load
 from brdf_explorer.ui.gestures import linked
 from brdf_explorer.views import VIEWS
 from brdf_explorer.views.develop import develop
@@ -205,3 +205,26 @@ def test_a_drawing_draws_fills_lines_and_pictures_in_order(gpu):
     assert pixels[59 - 25, 15].tolist() == [0, 255, 0] and pixels[59 - 55, 80].tolist() == [255, 255, 255]
     assert (picture.labels[0].x, picture.labels[0].y) == (50, 5)
     assert linked(picture.links, (30, 20)).state == State() and linked(picture.links, (30, 5)) is None
+
+
+@pytest.mark.parametrize("name", ["gold", "ceramic", "glass", "brushed_aluminium"])
+def test_factors_multiply_to_f(gpu, name):
+    state = load(name)
+    theta, values = state.views["factors"].curves(gpu, state)
+    phi = np.radians(state.directions.phi_o)
+    wo, wi = direction(np.radians(state.directions.theta_o), phi), direction(theta, phi)
+    factors = state.model.factors(wo, wi)
+    product = factors["D"] * factors["G"] * factors["jacobian"]
+    np.testing.assert_allclose(product[:, None] * factors["F"], state.model.f(wo, wi), rtol=1e-13)
+    np.testing.assert_allclose(
+        values["D"] * values["G"] * values["F"] * values["jacobian"], values["product"], rtol=1e-4
+    )
+
+
+def test_factors_say_that_d_cos_integrates_to_1_and_when_there_are_none(gpu):
+    def words(name):
+        state = load(name)
+        return [label.text for label in last(state.views["factors"].pictures(gpu, state, (700, 450))).labels]
+
+    assert "∫ D cos θ dω = 1.0000000000" in words("gold")
+    assert any("No factors to show" in w for w in words("chalk"))

@@ -74,6 +74,12 @@ class Microfacet(Model):
 
         return wi, above_horizon(weight, wo, wi, 3)
 
+    def factors(self, wo, wi):
+        """D, G, F and the Jacobian, whose product is f, for directions above the horizon: name -> (...), of F (..., 3)."""
+        F = slot("fresnel", self.fresnel).F(cos_facet(wo, wi), np.array(self.eta), np.array(self.k))
+        D = slot("ndf", self.ndf).D(wo + wi, np.array(self.alpha))
+        return {"D": D, "G": self._G2(wo, wi), "F": F, "jacobian": 1 / (4 * split(wo)[2] * split(wi)[2])}
+
     def _G2(self, wo, wi):
         alpha = np.array(self.alpha)
         Lambda = slot("smith", self.ndf, self.smith).Lambda

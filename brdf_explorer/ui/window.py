@@ -44,6 +44,7 @@ class Window:
         self.dropped = []
         self.gpu, self.thumbnails = None, None
         self.theme = None
+        self.behind = set()  # views that are to come in front of the others in their place
         self.fresh, self.width = True, 0  # whether no layout was saved, and the width that it was made for
 
     def run(self):
@@ -96,7 +97,7 @@ class Window:
             split("MainDockSpace", "Right", direction.right, 0.46),
             split("Right", "Right foot", direction.down, 0.5),
         ]
-        places = {"sphere": "MainDockSpace", "lobe": "Right", "polar": "Right foot"}
+        places = {"lobe": "Right", "polar": "Right foot", "factors": "Right foot"}
         panels = [("Material", "Inspector", self.material), ("Scene", "Inspector", self.scene)]
         panels.append(("Presets", "Inspector", self.presets))
         for name, view in VIEWS.items():
@@ -136,6 +137,7 @@ class Window:
         splits[0].ratio = min(points(COLUMN) / self.window_width(), 0.5)
         layout.docking_splits = splits
         layout.layout_reset = True
+        self.behind = {"sphere", "lobe", "polar"}
 
     # --- a frame ---------------------------------------------------------------------------------------------------------
 
@@ -235,6 +237,9 @@ class Window:
         shown = imgui.begin(VIEWS[name].title, None, flags)[0]
         imgui.pop_style_color()
         imgui.pop_style_var()
+        if name in self.behind and imgui.is_window_docked():
+            self.behind.remove(name)
+            imgui.set_window_focus()
         if shown and imgui.is_window_docked():  # not before the layout is made: the panel's size would be another
             self.state = self.canvases[name].panel(self.gpu, self.state, self.memory, self.export)
         imgui.end()

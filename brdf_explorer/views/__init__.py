@@ -1,7 +1,8 @@
 """The views, one module each. `VIEWS` lists them by name."""
 
+from .factors import Factors
 from .lobe import Lobe
 from .polar import Polar
 from .sphere import Sphere
 
-VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar)}
+VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar, Factors)}
