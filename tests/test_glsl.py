@@ -3,10 +3,10 @@
 import re
 import shutil
 import subprocess
-from itertools import product
 
 import pytest
-from test_twins import CHUNKS, pairwise
+from oracles.cases import choices_of, pairwise
+from test_twins import CHUNKS
 
 from brdf_explorer import glsl
 from brdf_explorer.glsl import PREAMBLE, SHADERS, Source, assemble, of_model, params_glsl
@@ -179,19 +179,10 @@ def slots_of(path):
     return {slot: options(slot, pattern) for pattern, slot in found if slot != "model"}
 
 
-def choices_of(cls):
-    return {name: c.options for name, c in declared(cls, Choice).items()}
-
-
-def of_each_choice(path, cls, dialect):
-    """The texts of an entry with each combination of a model's choices, or, where the entry has slots of its own, with
-    combinations that hold each pair of options."""
+def of_choices(path, cls, dialect):
+    """The texts of an entry with a model's choices and slots of its own, each pair of options in some."""
     choices, slots = choices_of(cls), slots_of(path)
-    if slots:
-        combinations = pairwise(choices | slots)
-    else:
-        combinations = [dict(zip(choices, chosen, strict=True)) for chosen in product(*choices.values())]
-    for chosen in combinations:
+    for chosen in pairwise(choices | slots):
         model = cls(**{name: chosen[name] for name in choices})
         yield of_model(path, model, dialect, {name: chosen[name] for name in slots})
 
@@ -199,7 +190,7 @@ def of_each_choice(path, cls, dialect):
 def sources(path, dialect):
     """The texts of an entry with all models, choices and slots."""
     if '"models/{model}.glsl"' in text_of(path):
-        return [source for cls in MODELS.values() for source in of_each_choice(path, cls, dialect)]
+        return [source for cls in MODELS.values() for source in of_choices(path, cls, dialect)]
     return [assemble(path, chosen, dialect=dialect) for chosen in pairwise(slots_of(path))]
 
 
@@ -267,7 +258,7 @@ def test_files_carry_no_version():
 
 @pytest.mark.parametrize("cls", MODELS.values(), ids=lambda cls: cls.name())
 def test_every_param_is_used(gpu, cls):
-    programs = [gpu.program(source) for source in of_each_choice("views/table.frag", cls, "330 core")]
+    programs = [gpu.program(source) for source in of_choices("views/table.frag", cls, "330 core")]
     for name in declared(cls, Param):
         assert any(f"material.{name}" in program for program in programs), f"{cls.name()}.{name} moves nothing"
 

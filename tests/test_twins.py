@@ -8,10 +8,11 @@ import importlib
 import inspect
 import re
 from dataclasses import dataclass
-from itertools import combinations, product
+from itertools import combinations
 
 import numpy as np
 import pytest
+from oracles.cases import CASES, case_label, pairwise
 
 from brdf_explorer.glsl import SHADERS, Signature, assemble
 from brdf_explorer.lib.common import PI, TWO_PI, length, normalize, quotient, vec
@@ -350,32 +351,6 @@ def random_params(cls, rng):
     return values
 
 
-def pairwise(choices):
-    """A small set of combinations in which each pair of options of two choices occurs."""
-    names = sorted(choices)
-    missing = {frozenset(((a, x), (b, y))) for a, b in combinations(names, 2) for x in choices[a] for y in choices[b]}
-    everything = [dict(zip(names, options, strict=True)) for options in product(*(choices[n] for n in names))]
-    if len(names) < 2:
-        return everything
-    chosen = []
-    while missing:
-        best = max(everything, key=lambda c: sum(pair <= set(c.items()) for pair in missing))
-        missing -= {pair for pair in missing if pair <= set(best.items())}
-        chosen.append(best)
-    return chosen
-
-
-CASES = [
-    (cls, choices)
-    for cls in MODELS.values()
-    for choices in pairwise({name: c.options for name, c in declared(cls, Choice).items()})
-]
-
-
-def case_label(value):
-    return value.name() if isinstance(value, type) else "-".join(value.values())
-
-
 def materials(cls, choices, rng, count=12):
     """A model at the ends of its params' ranges and at random places."""
     params = declared(cls, Param)
@@ -498,7 +473,19 @@ def test_models_have_the_functions_of_their_shaders(cls):
         assert names == ["self", *(n for _, n in function.arguments)]
 
 
-def test_pairwise_covers_all_pairs():
-    choices = {"a": ("x", "y"), "b": ("x", "y", "z"), "c": ("x", "y")}
-    covered = {pair for c in pairwise(choices) for pair in combinations(sorted(c.items()), 2)}
-    assert len(covered) == 2 * 3 + 2 * 2 + 3 * 2
+def test_cases_hold_all_pairs_of_options():
+    for cls in MODELS.values():
+        choices = {name: c.options for name, c in declared(cls, Choice).items()}
+        held = {pair for c, case in CASES if c is cls for pair in combinations(case.items(), 2)}
+        sizes = [len(options) for options in choices.values()]
+        assert len(held) == sum(a * b for a, b in combinations(sizes, 2))
+        assert all(option in choices[name] for pair in held for name, option in pair)
+
+
+@pytest.mark.parametrize("options", [{}, {"a": "xy"}, {"a": "xy", "b": "xyz", "c": "xy"}], ids=len)
+def test_pairwise(options):
+    cases = pairwise(options)
+    assert cases and all(case.keys() == options.keys() for case in cases)
+    assert {(a, x) for case in cases for a, x in case.items()} == {(a, x) for a in options for x in options[a]}
+    held = {pair for case in cases for pair in combinations(case.items(), 2)}
+    assert len(held) == sum(len(options[a]) * len(options[b]) for a, b in combinations(options, 2))

@@ -1,6 +1,7 @@
-"""Every material that the declarations allow, for tests that are loops over MODELS."""
+"""Materials that the declarations allow, for tests that are loops over MODELS: every option of every choice beside every option
+of every other choice."""
 
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 
@@ -8,13 +9,32 @@ from brdf_explorer.model import Choice, Param, declared
 from brdf_explorer.models import MODELS
 
 
-def combinations(cls):
-    """Every set of choices of a model, as dicts."""
-    choices = declared(cls, Choice)
-    return [dict(zip(choices, values, strict=True)) for values in product(*(c.options for c in choices.values()))]
+def pairwise(options):
+    """A small list of dicts, one option of each name, in which each pair of options of two names occurs.
+
+    Greedy: a case begins with a pair that is missing, and takes of each further name the option that adds most pairs.
+    """
+    pairs = [(a, x, b, y) for a, b in combinations(options, 2) for x in options[a] for y in options[b]]
+    missing = dict.fromkeys(frozenset(((a, x), (b, y))) for a, x, b, y in pairs)  # in order, unlike a set
+    cases = [] if missing else [dict(zip(options, chosen, strict=True)) for chosen in product(*options.values())]
+    while missing:
+        case = dict(sorted(next(iter(missing))))
+        for name in options:
+            if name not in case:
+                new = {o: sum(frozenset(((name, o), old)) in missing for old in case.items()) for o in options[name]}
+                case[name] = max(new, key=new.get)
+        for pair in combinations(case.items(), 2):
+            missing.pop(frozenset(pair), None)
+        cases.append({name: case[name] for name in options})
+    return cases
 
 
-CASES = [(cls, choices) for cls in MODELS.values() for choices in combinations(cls)]
+def choices_of(cls):
+    """The options of a class's choices by name."""
+    return {name: c.options for name, c in declared(cls, Choice).items()}
+
+
+CASES = [(cls, choices) for cls in MODELS.values() for choices in pairwise(choices_of(cls))]
 
 
 def case_label(value):
