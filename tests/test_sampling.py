@@ -11,9 +11,11 @@ from brdf_explorer.measure.adversary import above
 from brdf_explorer.measure.albedo import albedo_with_error, integral
 from brdf_explorer.measure.grid import direction, grid, place, spread
 from brdf_explorer.measure.sampling import bins, chi_square, mean_weight, pooled
+from brdf_explorer.model import Choice, declared
 from brdf_explorer.models import MODELS
 
 Microfacet = MODELS["microfacet"]
+SAMPLING = declared(Microfacet, Choice)["sampling"].options
 UP = np.array([0.0, 0.0, 1.0])
 ALPHAS = ((0.01, 0.01), (0.3, 0.3), (1.0, 1.0), (0.05, 0.6))
 THETAS = (0.0, 30.0, 60.0, 85.0)
@@ -52,8 +54,9 @@ def least(tests):
     return -np.expm1(len(p) * np.log1p(-min(p[k], 1 - 1e-16))), k
 
 
-def test_there_is_a_sampler_for_each_distribution_of_normals():
-    assert {c["ndf"] for cls, c in SAMPLERS if cls is Microfacet} == {"ggx", "beckmann"}
+def test_samplers_are_told_apart():
+    assert {c["sampling"] for cls, c in SAMPLERS if cls is Microfacet and c["ndf"] == "ggx"} == set(SAMPLING)
+    assert len([c for cls, c in SAMPLERS if cls is Microfacet and c["ndf"] == "beckmann"]) == 2  # ndf and visible
 
 
 @pytest.mark.parametrize("twin", ["float64", "float32"])
@@ -90,7 +93,7 @@ def mean_weight_error(model, wo, sample=None):
     return np.max(np.abs(mean.value - value) / (mean.error + error))
 
 
-# Student's t with 15 degrees of freedom, as there are 16 rotations: beyond 7.5 lies 2e-6, for 3 colours and 84 cases 5e-4
+# Student's t with 15 degrees of freedom, as there are 16 rotations: beyond 7.5 lies 2e-6, for 3 colours and 90 cases 5e-4
 STANDARD_ERRORS = 7.5
 
 
@@ -118,27 +121,45 @@ def test_weight_is_f_cos_over_pdf(cls, choices):
             pdf = model.pdf(wo, wi)
             known = (pdf > 1e-200) & (wi[:, 2] > 1e-6)
             expected = model.f(wo, wi)[known] * wi[known, 2:] / pdf[known, None]
-            np.testing.assert_allclose(weight[known], expected, rtol=1e-11)
+            np.testing.assert_allclose(weight[known], expected, rtol=1e-11, atol=1e-290)  # below, float64 runs out
             assert np.all(weight[wi[:, 2] <= HORIZON] == 0)
 
 
+VISIBLE = [("ggx", "visible"), ("ggx", "caps"), ("ggx", "bounded"), ("beckmann", "visible")]
+
+
 @pytest.mark.parametrize("shadowing", ["separable", "correlated"])
-@pytest.mark.parametrize("ndf", ["ggx", "beckmann"])
-def test_weights_of_visible_normals_are_at_most_one(gpu, ndf, shadowing):
-    """G2 / G1(wo), which is G1(wi) or (1 + Lambda_o) / (1 + Lambda_o + Lambda_i)."""
+@pytest.mark.parametrize(("ndf", "sampling"), VISIBLE)
+def test_weights_of_visible_normals_are_at_most_one(gpu, ndf, sampling, shadowing):
+    """G2 / G1(wo), which is G1(wi) or (1 + Lambda_o) / (1 + Lambda_o + Lambda_i); less for a bounded cap."""
     rng = np.random.default_rng(6)
     wo, u = above(rng, 20_000), rng.random((20_000, 2))
     for alpha in ALPHAS:
-        model = Microfacet(alpha=alpha, ndf=ndf, shadowing=shadowing, fresnel="one")
+        model = Microfacet(alpha=alpha, ndf=ndf, sampling=sampling, shadowing=shadowing, fresnel="one")
         assert 0 < model.sample_f(wo, u)[1].max() <= 1 + 1e-14
         assert 0 < gpu.sample_f(model, wo, u)[1].max() <= 1 + 10 * 2.0**-24  # ten operations in a row
 
 
+def test_a_bounded_cap_rejects_less():
+    """And no direction above the horizon that it could have drawn: its weights still have the albedo for a mean."""
+    rng = np.random.default_rng(8)
+    u = rng.random((20_000, 2))
+    for alpha, theta, least in [((1.0, 1.0), 0.0, 0.4), ((1.0, 1.0), 1.4, 0.1), ((0.5, 0.9), 1.2, 0.03)]:
+        wo = np.broadcast_to(direction(theta, 0.5), (len(u), 3))
+        caps, bounded = (
+            np.mean(Microfacet(alpha=alpha, sampling=s).sample_f(wo, u)[0][:, 2] <= HORIZON)
+            for s in ("caps", "bounded")
+        )
+        assert caps - bounded > least, (alpha, theta, caps, bounded)
+
+
+@pytest.mark.parametrize("sampling", ["ndf", "visible", "caps"])
 @pytest.mark.parametrize("ndf", ["ggx", "beckmann"])
-def test_samples_along_the_normal_invert_the_cdf(ndf):
+def test_samples_along_the_normal_invert_the_cdf(ndf, sampling):
     """Seen along the normal tan^2(theta_m) is alpha^2 u / (1 - u) for GGX and -alpha^2 ln(1 - u) for Beckmann."""
     u = np.random.default_rng(7).random((50_000, 2))
-    wm = slot("ndf", ndf).sample_D_visible(np.broadcast_to(UP, (len(u), 3)), u, np.array([0.3, 0.3]))
+    up = np.broadcast_to(UP, (len(u), 3))
+    wm = up + slot("sampling", ndf, sampling).sample_wi(up, u, np.array([0.3, 0.3]))
     t = np.sort(np.sum(wm[:, :2] ** 2, axis=-1) / wm[:, 2] ** 2 / 0.09)
     cdf = t / (1 + t) if ndf == "ggx" else -np.expm1(-t)
     steps = np.arange(len(t) + 1) / len(t)

@@ -173,6 +173,7 @@ DRAWS = {
     "linear": either(decades(1e-6, 1), uniform(0, 1)),
     "cos_o": COSINE,
     "sin_o": sine_of("cos_o"),
+    "density": decades(1e-6, 1e7),
     "pixel": integers(2**14),
     "index": integers(2**32),
     "stream": integers(3),
@@ -180,6 +181,7 @@ DRAWS = {
     "bits": integers(2**32),
     # of one function, whose argument's name says less than its domain
     "exp_precise.x": either(uniform(-87, 88), signed(decades(1e-6, 80))),
+    "log_precise.x": either(decades(1e-6, 1e6), one_plus(signed(decades(1e-6, 0.9)))),
     "erfcx_precise.x": either(decades(1e-6, 6.5), uniform(0, 6.5)),
     "atan2_precise.x": signed(decades(1e-6, 1e6)),
     "atan2_precise.y": signed(decades(1e-6, 1e6)),
@@ -378,7 +380,7 @@ def exempt(model, wo, wi):
         return np.zeros((len(wo), 3), dtype=bool)
     k = np.array(model.k) if model.fresnel == "conductor" else 0.0
     found = near_critical(0.5 * length(wo + wi)[:, None], np.array(model.eta), k, 2e-4)
-    assert np.mean(found) < 2e-3
+    assert np.mean(found) < 5e-3  # even directions meet 8e-4 at most; 15 of 3000 instead of 2.4 are a chance of 1e-8
     return found
 
 
@@ -413,8 +415,12 @@ def test_sample_f(gpu, cls, choices):
         wi, weight = gpu.sample_f(model, wo, u)
         directions.append(relative_error(wi, model.sample_f(wo, u)[0]))
         wi = wi.astype(float)
-        expected = quotient(model.f(wo, wi) * wi[:, 2:], model.pdf(wo, wi)[:, None])
-        weights.append(relative_error(weight, expected, components=True)[~exempt(model, wo, wi)])
+        with np.errstate(under="ignore"):  # in the tails of a density
+            expected = quotient(model.f(wo, wi) * wi[:, 2:], model.pdf(wo, wi)[:, None])
+            # a weight may hold D, which leaves float32's range as in test_f
+            floor = quotient(TINY * wi[:, 2] / np.minimum(4 * wo[:, 2] * wi[:, 2], 1), model.pdf(wo, wi))
+        floor = np.maximum(floor, TINY)[:, None]
+        weights.append(relative_error(weight, expected, floor, True)[~exempt(model, wo, wi)])
     check(np.concatenate(directions))
     check(np.concatenate(weights))
 

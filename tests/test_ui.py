@@ -80,7 +80,7 @@ def a_choice_is_made(user):
     user.item("//Material/ndf/beckmann")
     assert user.state.model.ndf == "beckmann"
     assert not np.array_equal(before["lobe"], user.pictures()["lobe"])
-    assert reads(user.state.model) >= {"alpha", "eta", "smith"}
+    assert reads(user.state.model) >= {"alpha", "eta", "smith", "sampling"}
     user.item("//Material/fresnel/##choice")
     user.item("//$FOCUSED/one")
     assert user.state.model.fresnel == "one"

@@ -4,9 +4,9 @@ Eq. 25. Anisotropic by stretching, as GGX.
 
 import numpy as np
 
-from .beckmann import h_beckmann, z_Lambda_beckmann
-from .common import PI, dot, length, normalize, quotient, split, vec
-from .transcendental import erfcx_precise, exp_precise
+from .beckmann import z_Lambda_beckmann
+from .common import PI, dot, length, split
+from .transcendental import exp_precise
 
 
 def D(wm, alpha):
@@ -24,59 +24,3 @@ def D(wm, alpha):
 def visible_area(wo, alpha):
     """Area of the facets visible from wo, wo.z > 0, projected along wo: wo.z (1 + Lambda), the integral of D (wo . wm)+."""
     return split(wo)[2] + z_Lambda_beckmann(wo, alpha)
-
-
-def visible_slope_beckmann(u, sin_o, cos_o):
-    """Slope along the view's azimuth of facets with alpha = 1 seen from (sin_o, 0, cos_o).
-
-    It is where the visible area of facets with a smaller slope is u of the whole: Newton's method kept inside a bracket. The
-    area's CDF is cos_o erfc(-x)/2 + sin_o exp(-x^2) / (2 sqrt(pi)); above 0 its complement is solved, so that neither tail
-    is rounded away.
-    """
-    u, sin_o, cos_o = np.broadcast_arrays(u, sin_o, cos_o)
-    half_inv_sqrt_pi = 0.5 / np.sqrt(PI)
-    low = np.full(u.shape, -6.0)
-    high = np.minimum(cos_o / np.maximum(sin_o, 1e-9), 6.0)
-    head = 0.5 * cos_o + half_inv_sqrt_pi * sin_o
-    tail = sin_o * exp_precise(-high * high) * h_beckmann(high)
-    area = cos_o + tail
-    upper = u * area > head
-    low = np.where(upper, 0.0, low)
-    high = np.where(upper, high, np.minimum(high, 0.0))
-    x = 0.5 * (low + high)
-    for _ in range(60):
-        gauss = exp_precise(-x * x)
-        half_erfcx = 0.5 * cos_o * erfcx_precise(np.abs(x))
-        above = (1 - u) * area - tail - gauss * (half_erfcx - half_inv_sqrt_pi * sin_o)
-        below = gauss * (half_erfcx + half_inv_sqrt_pi * sin_o) - u * area
-        error = np.where(upper, above, below)
-        high = np.where(error > 0, x, high)
-        low = np.where(error > 0, low, x)
-        density = (cos_o - x * sin_o) * gauss * 2 * half_inv_sqrt_pi
-        step = np.where(density > 0, x - quotient(error, np.maximum(density, 0.0)), low - 1)
-        step = np.where((step > low) & (step < high), step, 0.5 * (low + high))
-        done = np.abs(step - x) <= 1e-15 * (1 + np.abs(x))
-        x = step
-        if np.all(done):
-            break
-    return x
-
-
-def sample_D_visible(wo, u, alpha):
-    """A normal distributed as D_visible = D (wo . wm)+ / visible_area, from u (..., 2).
-
-    Heitz and d'Eon 2014, "Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals", section 4;
-    the CDFs are solved, not fitted.
-    """
-    x, y, z = split(wo)
-    ax, ay = split(alpha)
-    u0, u1 = split(u)
-    vx, vy, vz = split(normalize(vec(ax * x, ay * y, z)))
-    sin_o = np.hypot(vx, vy)
-    cos_phi = np.where(sin_o > 0, quotient(vx, sin_o), 1.0)
-    sin_phi = quotient(vy, sin_o)
-    along = visible_slope_beckmann(u0, sin_o, vz)
-    across = visible_slope_beckmann(u1, 0.0, 1.0)
-    slope_x = along * cos_phi - across * sin_phi
-    slope_y = along * sin_phi + across * cos_phi
-    return normalize(vec(-ax * slope_x, -ay * slope_y, np.ones_like(slope_x)))

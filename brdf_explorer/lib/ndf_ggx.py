@@ -5,7 +5,7 @@ Anisotropic by stretching: normals are remapped by 1/alpha, directions by alpha 
 
 import numpy as np
 
-from .common import PI, TWO_PI, dot, length, normalize, split, vec
+from .common import PI, dot, length, split, vec
 
 
 def D(wm, alpha):
@@ -22,18 +22,3 @@ def visible_area(wo, alpha):
     x, y, z = split(wo)
     ax, ay = split(alpha)
     return 0.5 * (z + length(vec(ax * x, ay * y, z)))
-
-
-def sample_D_visible(wo, u, alpha):
-    """A normal distributed as D_visible = D (wo . wm)+ / visible_area, from u (..., 2).
-
-    Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", Listing 3.
-    """
-    x, y, z = split(wo)
-    ax, ay = split(alpha)
-    u0, u1 = split(u)
-    vx, vy, vz = split(normalize(vec(ax * x, ay * y, z)))
-    phi = TWO_PI * u0
-    q = u1 * (1 + vz)
-    r = np.sqrt(q * (2 - q))
-    return normalize(vec(ax * (r * np.cos(phi) + vx), ay * (r * np.sin(phi) + vy), (1 - u1) * (1 + vz)))

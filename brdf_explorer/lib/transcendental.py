@@ -8,6 +8,11 @@ def exp_precise(x):
         return np.exp(x)
 
 
+def log_precise(x):
+    """Natural logarithm of x > 0."""
+    return np.log(x)
+
+
 def atan2_precise(y, x):
     """Angle of the point (x, y) from the x axis, in [-pi, pi]; 0 at the origin."""
     return np.arctan2(y, np.where((x == 0) & (y == 0), 1.0, x))

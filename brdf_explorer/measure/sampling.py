@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..lib.common import HORIZON
+from ..lib.common import HORIZON, quotient
 from ..lib.random import random2
 from .albedo import gauss
 from .grid import grid, place, spread
@@ -32,7 +32,7 @@ class ChiSquare(NamedTuple):
 class Mean(NamedTuple):
     """A mean over points that are spread evenly, and its standard error from independent rotations of them.
 
-    The error is never below 1 over the number of points: what is rarer than that may not have been seen.
+    The error is never below the largest weight that there is over the number of points: what is rarer may not have been seen.
     """
 
     value: np.ndarray
@@ -112,4 +112,13 @@ def mean_weight(model, wo, points=1024, rotations=16, sample=None):
     u = random2(pixel.astype(np.uint32), np.arange(points, dtype=np.uint32)[None], 1)
     weight = np.asarray((sample or model.sample_f)(np.asarray(wo, dtype=float), u)[1], dtype=float)
     means = weight.mean(axis=1)
-    return Mean(means.mean(axis=0), np.hypot(means.std(axis=0, ddof=1) / np.sqrt(rotations), 1 / (points * rotations)))
+    unseen = largest_weight(model, wo) / (points * rotations)
+    return Mean(means.mean(axis=0), np.hypot(means.std(axis=0, ddof=1) / np.sqrt(rotations), unseen))
+
+
+def largest_weight(model, wo, n=64):
+    """The largest f cos / pdf (3,) for one viewer wo (3,), of n x n directions that follow the lobe."""
+    psi, _ = spread(wo, model.slopes(), (np.arange(n) + 0.5) / n)
+    wi = grid(wo, model.slopes(), np.arange(n) / n, psi).wi
+    with np.errstate(under="ignore"):  # in the tails of a density
+        return np.max(quotient(model.f(wo, wi) * wi[..., 2:], model.pdf(wo, wi)[..., None]), axis=(0, 1))

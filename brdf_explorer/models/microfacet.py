@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..lib import slot
-from ..lib.common import HORIZON, above_horizon, mirror, split
+from ..lib.common import HORIZON, above_horizon, split
 from ..lib.microfacet import cos_facet
 from ..model import Model, choice, param
 
@@ -28,6 +28,11 @@ class Microfacet(Model):
         "how masking towards the viewer and shadowing from the light combine",
     )
     fresnel: str = choice("conductor", ("conductor", "dielectric", "schlick", "one"), "reflectance of a facet")
+    sampling: str = choice(
+        "caps",
+        ("uniform", "cosine", "ndf", "visible", "caps", "bounded"),
+        "how sample_f draws directions: over the hemisphere, by D, or by the normals that the viewer sees",
+    )
     smith: str = choice("exact", ("exact", "rational"), "Smith's Lambda of Beckmann: exact, or Walter's rational fit")
 
     def slopes(self):
@@ -54,23 +59,24 @@ class Microfacet(Model):
 
     def pdf(self, wo, wi):
         alpha = np.array(self.alpha)
-        ndf = slot("ndf", self.ndf)
-        return above_horizon(lambda o, i: ndf.D(o + i, alpha) / (4 * ndf.visible_area(o, alpha)), wo, wi)
+        D, pdf_wi = slot("ndf", self.ndf).D, self._sampling().pdf_wi
+        return above_horizon(lambda o, i: pdf_wi(o, i, D(o + i, alpha), alpha), wo, wi)
 
     def sample_f(self, wo, u):
         wo, u = np.asarray(wo, dtype=float), np.asarray(u, dtype=float)
         shape = np.broadcast_shapes(wo.shape[:-1], u.shape[:-1])
         wo, u = np.broadcast_to(wo, (*shape, 3)), np.broadcast_to(u, (*shape, 2))
         alpha = np.array(self.alpha)
-        ndf = slot("ndf", self.ndf)
+        D, sampling = slot("ndf", self.ndf).D, self._sampling()
         wi = np.broadcast_to([0.0, 0.0, 1.0], wo.shape).copy()
         up = wo[..., 2] > HORIZON
         with np.errstate(under="ignore"):  # of a component of no weight
-            wi[up] = mirror(wo[up], ndf.sample_D_visible(wo[up], u[up], alpha))
+            wi[up] = sampling.sample_wi(wo[up], u[up], alpha)
 
         def weight(wo, wi):
             facet = slot("fresnel", self.fresnel).F(cos_facet(wo, wi), np.array(self.eta), np.array(self.k))
-            return facet * (self._G2(wo, wi) * ndf.visible_area(wo, alpha) / split(wo)[2])[..., None]
+            share = sampling.weight_wi(wo, wi, D(wo + wi, alpha), alpha)
+            return facet * (self._G2(wo, wi) * share / split(wo)[2])[..., None]
 
         return wi, above_horizon(weight, wo, wi, 3)
 
@@ -79,6 +85,9 @@ class Microfacet(Model):
         F = slot("fresnel", self.fresnel).F(cos_facet(wo, wi), np.array(self.eta), np.array(self.k))
         D = slot("ndf", self.ndf).D(wo + wi, np.array(self.alpha))
         return {"D": D, "G": self._G2(wo, wi), "F": F, "jacobian": 1 / (4 * split(wo)[2] * split(wi)[2])}
+
+    def _sampling(self):
+        return slot("sampling", self.ndf, self.sampling)
 
     def _G2(self, wo, wi):
         alpha = np.array(self.alpha)

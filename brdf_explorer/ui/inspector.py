@@ -15,7 +15,7 @@ from ..views.picture import PALETTES
 from . import widgets
 from .theme import SMALL, points, u32, vec
 
-# unit vectors in general position, far from the normal: what matters to f changes its value at one of them
+# unit vectors in general position, far from the normal: what matters to f or pdf changes its value at one of them
 WO = np.array([0.96, 0.0, 0.28])
 WI = np.array([[0.0, 0.8, 0.6], [-0.576, 0.768, 0.28], [-0.96, 0.0, 0.28]])
 FIRST = 4  # frames that are not kept waiting for it
@@ -52,7 +52,11 @@ def material(state, memory):
 
 @cache
 def matters(cls, choices):
-    """Names of the parameters that change a model's f when these choices are made; with F = 1, say, eta and k do not."""
+    """Names of the parameters that change f or pdf when these choices are made; with F = 1, say, eta and k do not."""
+
+    def values(model):
+        return np.column_stack([model.f(WO, WI), model.pdf(WO, WI)])
+
     middle = {}
     for name, p in declared(cls, Param).items():
         middle[name] = p.low**0.1 * p.high**0.9 if p.scale == "log" else p.low + type(p.low)(0.6 * (p.high - p.low))
@@ -60,7 +64,7 @@ def matters(cls, choices):
     names = set()
     for name, declaration in declared(cls).items():
         others = declaration.options if isinstance(declaration, Choice) else (declaration.low, declaration.high)
-        if any(not np.array_equal(replace(model, **{name: other}).f(WO, WI), model.f(WO, WI)) for other in others):
+        if any(not np.array_equal(values(replace(model, **{name: other})), values(model)) for other in others):
             names.add(name)
     return names
 

@@ -15,15 +15,3 @@ float D(vec3 wm, vec2 alpha) {
 float visible_area(vec3 wo, vec2 alpha) {
   return 0.5 * (wo.z + length(vec3(alpha * wo.xy, wo.z)));
 }
-
-// A normal distributed as D_visible = D (wo . wm)+ / visible_area. Dupuy and Benyoub 2023, "Sampling Visible GGX Normals
-// with Spherical Caps", Listing 3. q = 1 - z of the cap's point: sqrt(q (2 - q)) errs by 1.1e-7 where sqrt(1 - z z) does by 2.5e-8 / q.
-vec3 sample_D_visible(vec3 wo, vec2 u, vec2 alpha) {
-  vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
-  float phi = TWO_PI * u.x;
-  float q = u.y * (1.0 + v.z);
-  float r = sqrt(q * (2.0 - q));
-  vec2 xy = vec2(r * cos(phi), r * sin(phi)) + v.xy;
-  float z = (1.0 - u.y) * (1.0 + v.z);
-  return normalize(vec3(alpha * xy, z));
-}

@@ -10,6 +10,21 @@ float exp_precise(float x) {
   return series * uintBitsToFloat(uint(int(n) + 127) << 23);
 }
 
+// Natural logarithm of x > 0 in float32's normal range, relative error 1.2e-7, also near 1. Cephes logf's polynomial.
+float log_precise(float x) {
+  int e = int(floatBitsToUint(x) >> 23) - 127;
+  float f = uintBitsToFloat((floatBitsToUint(x) & 0x7fffffu) | 0x3f800000u);  // in [1, 2)
+  if (f > 1.41421356) {
+    f *= 0.5;
+    e += 1;
+  }
+  f -= 1.0;
+  float p = 3.3333331174e-1 + f * (-2.4999993993e-1 + f * (2.0000714765e-1 + f * (-1.6668057665e-1 + f * (1.4249322787e-1
+      + f * (-1.2420140846e-1 + f * (1.1676998740e-1 + f * (-1.1514610310e-1 + f * 7.0376836292e-2)))))));
+  float n = float(e);  // ln 2 in two parts, as in exp_precise
+  return (f + (f * f * (f * p - 0.5) - n * 2.12194440e-4)) + n * 0.693359375;
+}
+
 // Angle of the point (x, y) from the x axis, in [-pi, pi], relative error 3e-7; 0 at the origin. Cephes atanf's polynomial.
 float atan2_precise(float y, float x) {
   float large = max(abs(x), abs(y));

@@ -5,6 +5,7 @@
 #include "lib/common.glsl"
 #include "lib/microfacet.glsl"
 #include "lib/ndf_{ndf}.glsl"
+#include "lib/sampling_{ndf}_{sampling}.glsl"
 #include "lib/smith_{ndf}_{smith}.glsl"
 #include "lib/shadowing_{shadowing}.glsl"
 #include "lib/fresnel_{fresnel}.glsl"
@@ -16,18 +17,18 @@ vec3 f(vec3 wo, vec3 wi) {
   return facet * (D(wo + wi, material.alpha) * G / (4.0 * wo.z * wi.z));
 }
 
-// D_visible / (4 wo . wm): the wo . wm of D_visible and of the reflection's Jacobian cancel.
 float pdf(vec3 wo, vec3 wi) {
   if (wo.z <= HORIZON || wi.z <= HORIZON) return 0.0;
-  return D(wo + wi, material.alpha) / (4.0 * visible_area(wo, material.alpha));
+  return pdf_wi(wo, wi, D(wo + wi, material.alpha), material.alpha);
 }
 
-// The weight is F G2 / G1: D cancels.
+// The weight is F G2 D / (4 pdf wo.z), by weight_wi, where most samplers cancel D: for visible normals it is F G2 / G1.
 vec3 sample_f(vec3 wo, vec2 u, out vec3 wi) {
   wi = vec3(0.0, 0.0, 1.0);
   if (wo.z <= HORIZON) return vec3(0.0);
-  wi = mirror(wo, sample_D_visible(wo, u, material.alpha));
+  wi = sample_wi(wo, u, material.alpha);
   if (wi.z <= HORIZON) return vec3(0.0);
   float G = G2(wo, wi, Lambda(wo, material.alpha), Lambda(wi, material.alpha));
-  return F(cos_facet(wo, wi), material.eta, material.k) * (G * visible_area(wo, material.alpha) / wo.z);
+  float share = weight_wi(wo, wi, D(wo + wi, material.alpha), material.alpha);
+  return F(cos_facet(wo, wi), material.eta, material.k) * (G * share / wo.z);
 }

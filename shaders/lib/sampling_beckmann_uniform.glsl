@@ -1,0 +1,2 @@
+// Slot sampling: the same for all normals.
+#include "lib/sampling_uniform.glsl"
