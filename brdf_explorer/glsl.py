@@ -1,7 +1,8 @@
 """Shader text: `#include` with slots, generated parameters, two dialects, and errors told by file and line. No GL here.
 
 `#include "lib/ndf_{ndf}.glsl"` is a path from shaders/, its slots filled from the choices. Each file enters once.
-`#include "params.glsl"` and other generated files come from a dictionary.
+`#include "params.glsl"` and other generated files come from a dictionary. With the formulas "textbook" a file of
+shaders/textbook stands in for the file of shaders/ at the same place below it: the same functions, typed as they are printed.
 """
 
 import re
@@ -19,6 +20,7 @@ PREAMBLE = {
     "300 es": "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n",
 }
 INCLUDE = re.compile(r'\s*#include "([^"]+)"')
+FUNCTION = re.compile(r"^(?!return\b|else\b)(\w+ \w+\([^();]*\))\s*{", re.MULTILINE)
 LOCATION = re.compile(r"\b\d+:(\d+)\((\d+)\)|\b\d+\((\d+)\)|ERROR: \d+:(\d+)")
 
 
@@ -41,9 +43,9 @@ class Source:
         return LOCATION.sub(place, log)
 
 
-def assemble(path, slots=None, generated=None, dialect="330 core"):
+def assemble(path, slots=None, generated=None, dialect="330 core", formulas="stable"):
     """The Source of the shader `path` with its slots filled. Raises Invalid for a missing file, slot or a loop."""
-    return _assemble(path, tuple((slots or {}).items()), tuple((generated or {}).items()), dialect)
+    return _assemble(path, tuple((slots or {}).items()), tuple((generated or {}).items()), dialect, formulas)
 
 
 def reload():
@@ -52,7 +54,7 @@ def reload():
 
 
 @cache
-def _assemble(path, slots, generated, dialect):
+def _assemble(path, slots, generated, dialect, formulas):
     slots, generated = dict(slots), dict(generated)
     text, lines, files = [], [], []
     preamble = PREAMBLE[dialect].splitlines()
@@ -61,6 +63,7 @@ def _assemble(path, slots, generated, dialect):
     seen = set()
 
     def include(name, chain):
+        name = printed(name) if formulas == "textbook" else name
         if name in chain:
             raise Invalid(f"{chain[-1]}: include loop: {' -> '.join([*chain[chain.index(name) :], name])}")
         if name in seen:
@@ -90,6 +93,11 @@ def filled(path, slots, where):
     return path.format(**slots)
 
 
+def printed(name):
+    """The file that stands in for a formula's file with the formulas "textbook", or the same where there is none."""
+    return f"textbook/{name}" if (SHADERS / "textbook" / name).is_file() else name
+
+
 def read(name, chain):
     try:
         return (SHADERS / name).read_text(encoding="utf-8")
@@ -108,13 +116,14 @@ def params_glsl(name, cls):
     return f"struct {name.title()} {{\n{body}}};\nuniform {name.title()} {name};\n"
 
 
-def of_model(path, model, dialect="330 core", slots=None, generated=None):
+def of_model(path, model, dialect="330 core", slots=None, generated=None, formulas="stable"):
     """A shader that uses the model: {model} and its choices fill slots, `params.glsl` declares `material`."""
     return assemble(
         path,
         {"model": model.name(), **model.choices(), **(slots or {})},
         {"params.glsl": params_glsl("material", type(model)), **(generated or {})},
         dialect,
+        formulas,
     )
 
 
@@ -161,3 +170,31 @@ class Signature:
             padding = ", 0.0" * (4 - kind.components)
             lines.append(f"  result{i} = vec4({value}{padding});")
         return "\n".join([*lines, "}\n"])
+
+
+@dataclass(frozen=True)
+class Function:
+    """A GLSL function: where it is, its signature, and the names of what goes in."""
+
+    file: str
+    signature: str
+
+    @property
+    def name(self):
+        return Signature(self.signature).name
+
+    @property
+    def arguments(self):
+        """[(type, name)] of what goes in."""
+        inside = self.signature.partition("(")[2].rstrip(")")
+        return [tuple(p.split()[-2:]) for p in inside.split(",") if p.split()[0] != "out"]
+
+    @property
+    def over_maps(self):
+        """A function of textures."""
+        return any(kind == "sampler2D" for kind, _ in self.arguments)
+
+
+def functions(file):
+    """The functions that a shader file defines itself."""
+    return [Function(file, s) for s in FUNCTION.findall(read(file, []))]

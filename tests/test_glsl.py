@@ -9,7 +9,7 @@ from oracles.cases import choices_of, pairwise
 from test_twins import CHUNKS
 
 from brdf_explorer import glsl
-from brdf_explorer.glsl import PREAMBLE, SHADERS, Source, assemble, of_model, params_glsl
+from brdf_explorer.glsl import PREAMBLE, SHADERS, Source, assemble, functions, of_model, params_glsl
 from brdf_explorer.model import Choice, Invalid, Param, declared
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import SECTIONS
@@ -30,7 +30,7 @@ def write(tmp_path, monkeypatch):
 
     def write(name, text):
         path = tmp_path / name
-        path.parent.mkdir(exist_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
 
     yield write
@@ -95,6 +95,17 @@ def test_missing_slot_is_told_with_file_and_line(write):
     write("b.glsl", 'one\ntwo\n#include "lib/ndf_{ndf}.glsl"\n')
     with pytest.raises(Invalid, match=r"^b\.glsl:3: no choice fills the slot {ndf} of lib/ndf_{ndf}\.glsl$"):
         assemble("a.frag", {"smith": "exact"})
+
+
+def test_textbook_forms_stand_in_where_there_are_some(write):
+    write("a.frag", '#include "lib/b.glsl"\n#include "lib/c.glsl"\n')
+    write("lib/b.glsl", "stable b\n")
+    write("lib/c.glsl", "stable c\n")
+    write("textbook/lib/b.glsl", "printed b\n")
+    assert body(assemble("a.frag")) == ["stable b", "stable c"]
+    source = assemble("a.frag", formulas="textbook")
+    assert body(source) == ["printed b", "stable c"]
+    assert source.files == ("a.frag", "textbook/lib/b.glsl", "lib/c.glsl")
 
 
 def test_reload_sees_changed_files(write):
@@ -222,16 +233,43 @@ def test_vertex_shader_compiles(gpu, vertex, dialect):
         gpu.program(fragment, source)
 
 
-def alone(chunk, dialect):
+def alone(chunk, dialect, formulas="stable"):
     """A shader with nothing but the chunk: it includes all that it needs."""
     generated = {"chunk.glsl": f'#include "lib/{chunk}.glsl"\n', "call.glsl": CONSTANT}
-    return assemble("views/probe.frag", generated=generated, dialect=dialect)
+    return assemble("views/probe.frag", generated=generated, dialect=dialect, formulas=formulas)
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)
 @pytest.mark.parametrize("chunk", CHUNKS)
 def test_chunk_compiles_alone(gpu, chunk, dialect):
     gpu.program(alone(chunk, dialect), assemble("views/full.vert", dialect=dialect))
+
+
+PRINTED = sorted(p.relative_to(SHADERS / "textbook").as_posix() for p in (SHADERS / "textbook").glob("*/*.glsl"))
+
+
+def printed_sources(dialect):
+    """The texts in which printed forms stand in: each chunk alone, and the models that they are part of."""
+    for file in PRINTED:
+        if file.startswith("lib/"):
+            yield alone(file[4:-5], dialect, "textbook")
+    for cls in MODELS.values():
+        for chosen in pairwise(choices_of(cls)):
+            yield of_model("views/table.frag", cls(**chosen), dialect, formulas="textbook")
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_printed_forms_compile(gpu, dialect):
+    for source in printed_sources(dialect):
+        gpu.program(source, assemble("views/full.vert", dialect=dialect))
+
+
+@pytest.mark.parametrize("file", PRINTED)
+def test_printed_forms_are_of_the_same_functions(file):
+    ours = {f.name: f.signature for f in functions(file)}
+    book = {f.name: f.signature for f in functions(f"textbook/{file}")}
+    shared = set(ours) & set(book)
+    assert shared and {n: ours[n] for n in shared} == {n: book[n] for n in shared}
 
 
 @pytest.mark.skipif(
@@ -242,6 +280,7 @@ def test_reference_compiler_accepts_all(tmp_path, dialect):
     """A second, stricter reader of the standard than Mesa."""
     texts = {source.text: entry[-4:] for entry in FRAGMENTS + VERTICES for source in sources(entry, dialect)}
     texts |= {alone(chunk, dialect).text: "frag" for chunk in CHUNKS}
+    texts |= {source.text: "frag" for source in printed_sources(dialect)}
     files = []
     for i, (text, stage) in enumerate(texts.items()):
         files.append(tmp_path / f"{i}.{stage}")

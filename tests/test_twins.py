@@ -7,14 +7,13 @@ arguments that float32 holds. A new chunk or model is covered as soon as its fil
 import importlib
 import inspect
 import re
-from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 import pytest
 from oracles.cases import CASES, case_label, pairwise
 
-from brdf_explorer.glsl import SHADERS, Signature, assemble
+from brdf_explorer.glsl import SHADERS, Signature, assemble, functions
 from brdf_explorer.lib.common import PI, TWO_PI, length, normalize, quotient, vec
 from brdf_explorer.model import Choice, Param, declared
 from brdf_explorer.models import MODELS
@@ -38,35 +37,6 @@ COLORS = {"f", "F", "tonemap", "srgb_encode"}
 
 
 # --- signatures ------------------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Function:
-    """A GLSL function: where it is, its signature, and the names of what goes in."""
-
-    file: str
-    signature: str
-
-    @property
-    def name(self):
-        return Signature(self.signature).name
-
-    @property
-    def arguments(self):
-        """[(type, name)] of what goes in."""
-        inside = self.signature.partition("(")[2].rstrip(")")
-        return [tuple(p.split()[-2:]) for p in inside.split(",") if p.split()[0] != "out"]
-
-    @property
-    def over_maps(self):
-        """A function of textures, which test_environment compares over maps."""
-        return any(kind == "sampler2D" for kind, _ in self.arguments)
-
-
-def functions(file):
-    """The functions that a shader file defines itself."""
-    text = (SHADERS / file).read_text(encoding="utf-8")
-    return [Function(file, s) for s in re.findall(r"^(?!return\b|else\b)(\w+ \w+\([^();]*\))\s*{", text, re.M)]
 
 
 def own(module):

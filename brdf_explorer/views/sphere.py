@@ -21,6 +21,9 @@ class Sphere(View):
     title = "Sphere"
 
     background: str = choice("plain", ("plain", "environment"), "what lies behind the sphere")
+    formulas: str = choice(
+        "stable", ("stable", "textbook"), "as we rearranged them for float32, or as they are printed"
+    )
     samples: int = param(1024, 1, 65536, "most samples a pixel", scale="log")
     noise: float = param(0.01, 1e-6, 0.1, "standard error of a pixel, over the mean, that ends sampling", scale="log")
 
@@ -43,7 +46,7 @@ class Sphere(View):
             uniforms |= {"turn": turn(light), "gain": light.gain}
             textures = environment_textures(gpu, light)
         lighting = "both" if len(lights) == 2 else lights[0] if lights else "dark"
-        fragment = of_model("views/sphere.frag", state.model, slots={"lighting": lighting})
+        fragment = of_model("views/sphere.frag", state.model, slots={"lighting": lighting}, formulas=self.formulas)
         program = gpu.program(fragment, assemble("views/disc.vert"))
         width, height = map(float, size)
         uniforms |= {"size": (width, height), "center": (width / 2, height / 2), "radius": self.radius(size)}
