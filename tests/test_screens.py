@@ -42,6 +42,14 @@ SCREENS = {
     "lobe-anisotropic": ("lobe", at(BRUSHED, theta_o=65.0, phi_o=30.0).with_view("lobe", azimuth=20.0, elevation=50.0)),
     "factors-light": ("factors", state("gold")),
     "factors-dark": ("factors", at(state("chrome", theme="dark"), theta_o=70.0).with_view("factors", axis="linear")),
+    "hemisphere-light": ("hemisphere", state("gold")),
+    "hemisphere-dark": (
+        "hemisphere",
+        at(replace(state("gold", theme="dark"), materials=BRUSHED.materials), theta_o=70.0, phi_o=20.0).with_view(
+            "hemisphere", quantity="D_visible"
+        ),
+    ),
+    "hemisphere-sharp": ("hemisphere", at(State((SHARP,)), theta_o=60.0).with_view("hemisphere", quantity="f")),
     "polar-light": ("polar", state("gold").with_view("polar", curves="rgb")),
     "polar-dark-log": (
         "polar",

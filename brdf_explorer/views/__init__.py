@@ -1,8 +1,9 @@
 """The views, one module each. `VIEWS` lists them by name."""
 
 from .factors import Factors
+from .hemisphere import Hemisphere
 from .lobe import Lobe
 from .polar import Polar
 from .sphere import Sphere
 
-VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar, Factors)}
+VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar, Factors, Hemisphere)}

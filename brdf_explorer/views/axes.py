@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..glsl import assemble
 from .diagram import apart, nice_step, number
 
 LETTER = 5.8  # points that a letter of a tick takes, on average
@@ -78,6 +79,21 @@ class Axes:
         for piece in np.split(np.arange(len(points)), np.flatnonzero(np.diff(known)) + 1):
             if len(piece) > 1 and known[piece[0]]:
                 self.drawing.stroke(points[piece], color, width, opacity)
+
+
+def colorbar(gpu, drawing, box, axis):
+    """The colours of the map from the axis's low end to its high one, with its ticks at the right. box: pixels."""
+    s = drawing.scale
+    left, bottom, right, top = np.round(box)
+    size = (max(int(right - left), 1), max(int(top - bottom), 1))
+    target = gpu.target("colorbar", size, 4, "f1")
+    gpu.draw(gpu.program(assemble("views/colorbar.frag")), target, {"box": (0.0, 0.0, *map(float, size))})
+    drawing.raster((left, bottom), target)
+    values = axis.ticks(top - bottom, 30 * s)
+    values = np.append(values[values < axis.high], axis.high)
+    heights = bottom + axis.share(values) * (top - bottom)
+    for i in apart(heights, np.full(len(values), 13 * s)):
+        drawing.text(tick(values[i]), (right + 6 * s, heights[i]), "muted", (0.0, 0.5), TICK)
 
 
 def tick(value):

@@ -1,0 +1,5 @@
+// A quantity of the model over the directions to the light.
+#include "models/{model}.glsl"
+#include "views/hemisphere_wi_{of_wi}.glsl"
+#include "views/lobe_{radius}.glsl"
+#include "views/hemisphere.glsl"

@@ -1,0 +1,1 @@
+float quantity(vec3 wo, vec3 wi) { return pdf(wo, wi); }

@@ -1,0 +1,1 @@
+float quantity(vec3 wo, vec3 wm) { return D(wm, alpha); }
