@@ -156,6 +156,8 @@ DRAWS = {
     "atan2_precise.x": signed(decades(1e-6, 1e6)),
     "atan2_precise.y": signed(decades(1e-6, 1e6)),
     "h_beckmann.a": either(decades(1e-6, 9.4), uniform(0, 9.4)),
+    "sum_with_cap.v": hemisphere,
+    "cut": either(ZERO, decades(1e-8, 1), uniform(0, 1)),
     "viridis.x": uniform(-0.1, 1.1),
     "environment_uv.w": sphere,
     "environment_direction.u": uniform(0, 1),

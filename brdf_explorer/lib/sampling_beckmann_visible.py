@@ -45,7 +45,7 @@ def visible_slope_beckmann(u, sin_o, cos_o):
         x = step
         if np.all(done):
             break
-    return x
+    return np.where(u == 0, -6.0, x)
 
 
 def sample_wi(wo, u, alpha):

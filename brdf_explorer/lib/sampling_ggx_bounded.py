@@ -5,7 +5,8 @@ Eto and Tokuyoshi 2023, "Bounded VNDF Sampling for Smith-GGX Reflections", Eq. 5
 
 import numpy as np
 
-from .common import TWO_PI, length, mirror, normalize, split, vec
+from .caps import sum_with_cap
+from .common import length, mirror, normalize, split, vec
 from .ndf_ggx import visible_area
 
 
@@ -20,14 +21,8 @@ def cut_of_cap(wo, alpha):
 def sample_wi(wo, u, alpha):
     x, y, z = split(wo)
     ax, ay = split(alpha)
-    u0, u1 = split(u)
-    vx, vy, vz = split(normalize(vec(ax * x, ay * y, z)))
-    cut = cut_of_cap(wo, alpha) * vz
-    phi = TWO_PI * u0
-    q = u1 * (1 + vz - cut)
-    r = np.sqrt(q * (2 - q))
-    wm = normalize(vec(ax * (r * np.cos(phi) + vx), ay * (r * np.sin(phi) + vy), (1 - u1) * (1 + vz - cut) + cut))
-    return mirror(wo, wm)
+    sum_x, sum_y, height = split(sum_with_cap(normalize(vec(ax * x, ay * y, z)), u, cut_of_cap(wo, alpha)))
+    return mirror(wo, normalize(vec(ax * sum_x, ay * sum_y, height)))
 
 
 def pdf_wi(wo, wi, density, alpha):

@@ -3,22 +3,16 @@
 Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", Listing 3.
 """
 
-import numpy as np
-
-from .common import TWO_PI, mirror, normalize, split, vec
+from .caps import sum_with_cap
+from .common import mirror, normalize, split, vec
 from .ndf_ggx import visible_area
 
 
 def sample_wi(wo, u, alpha):
     x, y, z = split(wo)
     ax, ay = split(alpha)
-    u0, u1 = split(u)
-    vx, vy, vz = split(normalize(vec(ax * x, ay * y, z)))
-    phi = TWO_PI * u0
-    q = u1 * (1 + vz)
-    r = np.sqrt(q * (2 - q))
-    wm = normalize(vec(ax * (r * np.cos(phi) + vx), ay * (r * np.sin(phi) + vy), (1 - u1) * (1 + vz)))
-    return mirror(wo, wm)
+    sum_x, sum_y, height = split(sum_with_cap(normalize(vec(ax * x, ay * y, z)), u, 0.0))
+    return mirror(wo, normalize(vec(ax * sum_x, ay * sum_y, height)))
 
 
 def pdf_wi(wo, wi, density, alpha):

@@ -11,6 +11,7 @@
 float visible_slope_beckmann(float u, float sin_o, float cos_o) {
   const float HALF_INV_SQRT_PI = 0.282094792;
   float low = -6.0;
+  if (u == 0.0) return low;  // the root is at -infinity: 24 steps would end anywhere on the way
   float high = min(cos_o / max(sin_o, 1e-9), 6.0);  // beyond 6 lies 1e-17 of the area; facets steeper than cot face away
   float head = 0.5 * cos_o + HALF_INV_SQRT_PI * sin_o;  // visible area of the slopes below 0
   float tail = sin_o * exp_precise(-high * high) * h_beckmann(high);  // visible area less cos_o: cos_o Lambda

@@ -1,5 +1,6 @@
 // Slot sampling: visible normals less those that reflect below the horizon, as far as a smaller cap leaves them out. Eto and
 // Tokuyoshi 2023, "Bounded VNDF Sampling for Smith-GGX Reflections", Eq. 5. For wo above the horizon.
+#include "lib/caps.glsl"
 #include "lib/common.glsl"
 #include "lib/ndf_ggx.glsl"
 
@@ -12,11 +13,8 @@ float cut_of_cap(vec3 wo, vec2 alpha) {
 
 vec3 sample_wi(vec3 wo, vec2 u, vec2 alpha) {
   vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
-  float cut = cut_of_cap(wo, alpha) * v.z;
-  float phi = TWO_PI * u.x;
-  float q = u.y * (1.0 + v.z - cut);  // 1 - z of the cap's point, as in sampling_ggx_caps.glsl
-  vec2 xy = sqrt(q * (2.0 - q)) * vec2(cos(phi), sin(phi)) + v.xy;
-  return mirror(wo, normalize(vec3(alpha * xy, (1.0 - u.y) * (1.0 + v.z - cut) + cut)));
+  vec3 sum = sum_with_cap(v, u, cut_of_cap(wo, alpha));
+  return mirror(wo, normalize(vec3(alpha * sum.xy, sum.z)));
 }
 
 float weight_wi(vec3 wo, vec3 wi, float density, vec2 alpha) {
