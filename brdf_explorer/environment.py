@@ -71,6 +71,21 @@ def _from_file(path, shown, changed, size):
     return with_tables(shown, read_picture(path, shown))
 
 
+# --- light in the eye's frame ----------------------------------------------------------------------------------------
+
+
+def toward(light):
+    """Unit vector to the directional light in the eye's frame: x to the right, y up, z to the eye."""
+    theta, phi = np.radians(light.theta), np.radians(light.phi)
+    return (np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta))
+
+
+def turn(light):
+    """The rotation about y from the eye's frame to the environment's, column by column."""
+    c, s = np.cos(np.radians(light.rotation)), np.sin(np.radians(light.rotation))
+    return (c, 0.0, -s, 0.0, 1.0, 0.0, s, 0.0, c)
+
+
 # --- the tables ------------------------------------------------------------------------------------------------------
 
 

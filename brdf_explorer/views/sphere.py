@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..environment import environment
+from ..environment import environment, toward, turn
 from ..glsl import assemble, of_model
 from ..model import choice, param
 from .diagram import number
@@ -90,18 +90,6 @@ def standard_error(mean, half):
     covered = mean[..., 3] > 0
     average = mean[covered][:, :3].mean()
     return float(np.sqrt(np.mean((mean[covered] - half[covered])[:, :3] ** 2)) / average) if average > 0 else 0.0
-
-
-def toward(light):
-    """Unit vector to the directional light in the eye's frame: x to the right, y up, z to the eye."""
-    theta, phi = np.radians(light.theta), np.radians(light.phi)
-    return (np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta))
-
-
-def turn(light):
-    """The rotation about y from the eye's frame to the environment's, column by column."""
-    c, s = np.cos(np.radians(light.rotation)), np.sin(np.radians(light.rotation))
-    return (c, 0.0, -s, 0.0, 1.0, 0.0, s, 0.0, c)
 
 
 def environment_textures(gpu, light):
