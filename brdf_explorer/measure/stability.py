@@ -10,8 +10,9 @@ An argument is known to half a unit in the last place, 2^-24, so it alone makes 
 """
 
 import re
+import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -20,7 +21,7 @@ from ..glsl import Signature, assemble, filled, functions, of_model, params_glsl
 from ..lib import slot
 from ..lib.common import HORIZON, TWO_PI, length, mirror, normalize, quotient, vec
 from ..lib.microfacet import cos_facet
-from ..model import Param, declared
+from ..model import Choice, Param, declared
 from .albedo import quadrature
 
 FORMS = ("stable", "textbook")
@@ -371,6 +372,7 @@ class Subject:
     source: Callable
     double: Callable = field(repr=False)
     model: type
+    choices: dict  # those that selected it
     is_model: bool = False
 
     @property
@@ -458,11 +460,11 @@ def subjects(model):
     found = []
     for include in re.findall(r'#include "(lib/[^"]+)"', text):
         file = filled(include, model.choices(), path)
-        names = [v for k, v in model.choices().items() if f"{{{k}}}" in include]
+        chosen = {k: v for k, v in model.choices().items() if f"{{{k}}}" in include}
         for function in _all_functions(file):
             there = hasattr(slot(file[4:-5]), function.name)
             if there and function.name in called - PARTS - {s.name for s in found}:
-                found.append(_chunk(cls, file, function, names))
+                found.append(_chunk(cls, file, function, chosen))
     return found + [_of_model(cls, model, function) for function in functions(path)]
 
 
@@ -473,7 +475,7 @@ def _all_functions(file):
     return own if own and len(included) == 0 else own + [f for i in included for f in _all_functions(i)]
 
 
-def _chunk(cls, file, function, names):
+def _chunk(cls, file, function, choices):
     def source(call, form):
         return assemble(
             "views/probe.frag", None, {"chunk.glsl": f'#include "{file}"\n', "call.glsl": call}, formulas=form
@@ -481,7 +483,8 @@ def _chunk(cls, file, function, names):
 
     twin = getattr(slot(file[4:-5]), function.name)
     kinds = {name: kind for kind, name in function.arguments}
-    return Subject(function.name, " ".join([function.name, *names]), function.signature, kinds, source, twin, cls)
+    label = " ".join([function.name, *choices.values()])
+    return Subject(function.name, label, function.signature, kinds, source, twin, cls, choices)
 
 
 def _of_model(cls, model, function):
@@ -514,7 +517,7 @@ def _of_model(cls, model, function):
         return quotient(rows.f(wo, wi) * wi[:, 2:], rows.pdf(wo, wi)[:, None])
 
     label = f"{function.name} {cls.name()}"
-    return Subject(function.name, label, signature, kinds, source, twin, cls, True)
+    return Subject(function.name, label, signature, kinds, source, twin, cls, {}, True)
 
 
 def _rows(cls, choices, values):
@@ -545,6 +548,7 @@ class Cell:
 
     points, nan, infinite, negative   how many, of arguments tried, and of those with such a value
     error         largest relative error where the function is well conditioned, at `worst`
+    choices       those that selected the function
     hard          the Point of the largest error where it is ill-conditioned, or None
     reciprocity   largest relative change when light and viewer are exchanged, where it is well conditioned
     gain          largest relative gain of an albedo of more than 1 over the float64 one
@@ -555,6 +559,7 @@ class Cell:
     row: str
     column: str
     form: str
+    choices: dict
     points: int
     nan: int
     infinite: int
@@ -720,6 +725,7 @@ def cell(gpu, subject, regime, form, batch):
         subject.label,
         regime.name,
         form,
+        subject.choices,
         len(batch.u),
         nan,
         infinite,
@@ -814,37 +820,40 @@ class Map:
 
 EFFORTS = ((192, 0), (512, 3))
 """Points and rounds of search of each pass: coarse cells first."""
+PAUSE = 0.05
+"""Seconds between two Maps."""
 _kept = {}
 
 
 def stability(gpu, model, efforts=EFFORTS, everything=False):
-    """Yield the Maps of a material's functions, row by row, in passes of growing effort; of its choices, not its parameters.
+    """Yield the Maps of a material's functions as they grow, in passes of growing effort; of its choices, not its parameters.
 
     everything: the functions of all options of its choices too, with the other choices as they are. Cells are kept by the text
     of their shaders.
     """
     rows = all_subjects(model) if everything else subjects(model)
-    cells = {}
-    for n, (count, rounds) in enumerate(efforts):
-        for i, subject in enumerate(rows):
-            for regime in REGIMES.values():
-                if not regime.concerns(subject):
-                    continue
-                key = (gpu.device, subject.texts, subject.label, regime.name, count, rounds)
-                if key not in _kept:
-                    _kept[key] = examine(gpu, subject, regime, count, rounds)
-                for form, found in _kept[key].items():
-                    cells[subject.label, regime.name, form] = found
-            done = (n * len(rows) + i + 1) / (len(efforts) * len(rows))
-            yield Map(tuple(s.label for s in rows), dict(cells), done)
+    todo = [
+        (subject, regime, *effort)
+        for effort in efforts
+        for subject in rows
+        for regime in REGIMES.values()
+        if regime.concerns(subject)
+    ]
+    labels, cells = tuple(s.label for s in rows), {}
+    last = time.perf_counter()
+    for n, (subject, regime, count, rounds) in enumerate(todo, 1):
+        key = (gpu.device, subject.texts, subject.label, regime.name, count, rounds)
+        if key not in _kept:
+            _kept[key] = examine(gpu, subject, regime, count, rounds)
+        for form, found in _kept[key].items():
+            cells[subject.label, regime.name, form] = found
+        if n == len(todo) or time.perf_counter() - last > PAUSE:
+            yield Map(labels, dict(cells), n / len(todo))
+            last = time.perf_counter()
 
 
 def all_subjects(model):
     """The Subjects of a material and of every other option of each of its choices."""
-    from dataclasses import replace
-
-    from ..model import Choice
-
     found = {s.label: s for s in subjects(model) if not s.is_model}
     for name, c in declared(model, Choice).items():
         for option in c.options:

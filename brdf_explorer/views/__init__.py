@@ -5,5 +5,6 @@ from .hemisphere import Hemisphere
 from .lobe import Lobe
 from .polar import Polar
 from .sphere import Sphere
+from .stability import Stability
 
-VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar, Factors, Hemisphere)}
+VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Stability)}
