@@ -541,6 +541,119 @@ def check(state, preset):
     return int(broken > 0)
 
 
+@main.command(cls=Flagged, sections=("material",))
+@preset_argument
+@scene_option
+@click.option("--all", "everything", is_flag=True, help="Functions of every option of the model's choices.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@click.option("--worst", nargs=2, metavar="ROW COLUMN", help="Write the worst point of a cell as a preset.")
+@click.option("--ours", is_flag=True, help="With --worst: of our form, not of the printed one.")
+@click.option("--size", type=Size(), default="900x700", show_default=True, help="Pixels of a picture.")
+@click.option(
+    "-o", "--output", metavar="FILE", help="A picture (.png, .svg, .pdf), the numbers (.json) or a preset (.toml)."
+)
+def stability(state, preset, everything, as_json, worst, ours, size, output):
+    """Map where float32 fails, in our formulas and in the printed ones.
+
+    A row is a function of PRESET, a column a regime of its arguments. Exit status 1 if ours breaks its promise: no NaN, infinite
+    or negative value, and an error of at most 1e-4 where the function is well conditioned.
+    """
+    import json
+
+    from .gpu import offscreen
+    from .measure.stability import stability as maps
+    from .model import Invalid
+    from .state import replacing, save
+    from .views.stability import shown_at
+
+    if worst and not (output or "").endswith(".toml"):
+        raise click.UsageError("--worst needs -o FILE.toml, the preset to write")
+    with offscreen() as gpu, progress() as show:
+        for found in maps(gpu, state.model, everything=everything):
+            show(f"{100 * found.progress:.0f} %")
+        if worst:
+            cell = chosen_cell(found, *worst, "stable" if ours else "textbook")
+            shown, beyond = shown_at(state, cell)
+            save(shown, output)
+            click.echo("\n".join([f"{output}: the worst point of {cell.row} {cell.column}, {cell.verdict}", *beyond]))
+            return 0
+        answer = stability_tree(gpu, state, found)
+        if output and output.endswith(".json"):
+            with replacing(output) as temporary:
+                temporary.write_text(json.dumps(answer, indent=1, allow_nan=False), encoding="utf-8")
+        elif output and output.endswith(".toml"):
+            raise Invalid(f"{output}: a preset is of one cell: --worst ROW COLUMN")
+        elif output:
+            from .export import save_view
+
+            rows = "all" if everything else "material"
+            save_view(gpu, state.with_view("stability", rows=rows), "stability", output, size)
+    if as_json:
+        click.echo(json.dumps(answer, indent=1, allow_nan=False))
+    else:
+        print_stability(found, state.material.name)
+    if output:
+        click.echo(output)
+    return int(bool(found.broken))
+
+
+def chosen_cell(found, row, column, form):
+    """The cell of a row, named by its function or its whole label, and a column. Raises UsageError."""
+    from .measure.stability import REGIMES
+    from .model import nearest
+
+    rows = [r for r in found.rows if row in (r, r.partition(" ")[0])]
+    if not rows:
+        raise click.UsageError(f"{row}: no such row{nearest(row, list(found.rows))}")
+    if column not in REGIMES:
+        raise click.UsageError(f"{column}: no such column{nearest(column, list(REGIMES))}")
+    cell = found.cells.get((rows[0], column, form)) or found.cells.get((rows[0], column, "stable"))
+    if cell is None:
+        raise click.UsageError(f"{rows[0]} has no argument that {column} is about")
+    return cell
+
+
+def stability_tree(gpu, state, found):
+    """All of a Map as JSON holds it; NaN and infinity are text."""
+    from dataclasses import asdict
+
+    from .measure.stability import LIMIT, REGIMES, WELL
+    from .state import material_table
+
+    def plain(value):
+        if isinstance(value, dict):
+            return {k: plain(v) for k, v in value.items()}
+        if isinstance(value, list | tuple):
+            return [plain(v) for v in value]
+        return repr(value) if isinstance(value, float) and not abs(value) < float("inf") else value
+
+    return {
+        "device": gpu.device,
+        "material": material_table(state.material),
+        "limit": LIMIT,
+        "well_conditioned": {"condition times 2^-24 at most": WELL},
+        "columns": {name: regime.doc for name, regime in REGIMES.items()},
+        "rows": list(found.rows),
+        "broken": [f"{c.row} {c.column}" for c in found.broken],
+        "cells": [{**plain(asdict(c)), "verdict": c.verdict} for c in found.cells.values()],
+    }
+
+
+def print_stability(found, name):
+    from .measure.stability import FORMS, REGIMES
+    from .views.stability import FORM_WORDS, summary
+
+    rows = []
+    for row in found.rows:
+        for form in FORMS:
+            cells = [found.cells.get((row, column, form)) for column in REGIMES]
+            if any(cells):
+                rows.append(
+                    (row if form == FORMS[0] else "", FORM_WORDS[form], *(c and summary(c) or "" for c in cells))
+                )
+    print_table(("function", "form", *(column.replace("_", " ") for column in REGIMES)), rows, title=name)
+
+
 @main.command()
 def bench():
     """Print what pictures cost, and starting.
