@@ -188,6 +188,32 @@ def test_oren_nayar_at_50_digits():
     assert_close(model.f(wo, wi), expected, model)
 
 
+def test_eon_at_50_digits():
+    """Listing 1 of the paper as printed, with its quotients of 0 by 0."""
+    mp = pytest.importorskip("mpmath").mp
+    wo, wi = pairs((0.5, 0.5))
+    model = Diffuse(albedo=(1.0, 0.5, 0.25), r=0.875, diffuse="eon")
+    expected = []
+    with mp.workdps(50):
+        book, r = Textbook(mp, (1, 1)), mp.mpf(model.r)
+        one, two = mp.mpf(1) / 2 - 2 / (3 * mp.pi), mp.mpf(2) / 3 - 28 / (15 * mp.pi)
+        A = 1 / (1 + one * r)
+
+        def E(w):
+            c, s = w[2], mp.sqrt(1 - w[2] ** 2)
+            G = s * (mp.acos(c) - s * c) + mp.mpf(2) / 3 * (s / c * (1 - s**3) - s)
+            return A * (1 + r * G / mp.pi)
+
+        for o, i in zip(wo, wi, strict=True):
+            o, i = book.vector(o), book.vector(i)
+            s = o[0] * i[0] + o[1] * i[1]
+            single = A * (1 + r * (s / max(o[2], i[2]) if s > 0 else s)) / mp.pi
+            mean = A * (1 + two * r)
+            lobe = (1 - E(o)) * (1 - E(i)) / (1 - mean) / mp.pi
+            expected.append([a * single + a * a * mean / (1 - a * (1 - mean)) * lobe for a in model.albedo])
+    assert_close(model.f(wo, wi), expected, model)
+
+
 # --- another renderer ------------------------------------------------------------------------------------------------
 
 MITSUBA_TOLERANCE = 1e-5

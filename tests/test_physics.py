@@ -210,18 +210,24 @@ def oren_nayar_albedo(sigma, theta):
     return A + 2 * B / PI * s * (0.5 * (theta - s * c) + (1 - s**3) / (3 * c)), A + B / 2
 
 
+def albedo_between_corners(model, theta_o):
+    """Albedo by quadrature between the corners that s / max(cos, cos) has at the viewer's angle and at the quarter turns."""
+    value = 0.0
+    for low, high in [(0, theta_o), (theta_o, PI / 2)]:
+        theta, dtheta = nodes(low, high, 32)
+        for start in (-PI / 2, PI / 2):
+            phi, dphi = nodes(start, start + PI, 32)
+            f = model.f(direction(theta_o, 0.0), direction(theta[:, None], phi))[..., 0]
+            value += np.einsum("tp,t,p->", f, np.sin(theta) * np.cos(theta) * dtheta, dphi)
+    return value
+
+
 @pytest.mark.parametrize("sigma", [0.0, 0.2, 1.0])
 def test_oren_nayar_albedo(sigma):
     model = Diffuse(albedo=(1, 1, 1), sigma=sigma, diffuse="oren_nayar")
     for theta_o in (0.4, 1.2, PI / 2 - 1e-6):
         expected, bound = oren_nayar_albedo(sigma, theta_o)
-        value = 0.0
-        for low, high in [(0, theta_o), (theta_o, PI / 2)]:  # the factor has corners there, and at the quarter turns
-            theta, dtheta = nodes(low, high, 32)
-            for start in (-PI / 2, PI / 2):
-                phi, dphi = nodes(start, start + PI, 32)
-                f = model.f(direction(theta_o, 0.0), direction(theta[:, None], phi))[..., 0]
-                value += np.einsum("tp,t,p->", f, np.sin(theta) * np.cos(theta) * dtheta, dphi)
+        value = albedo_between_corners(model, theta_o)
         assert value == pytest.approx(expected, abs=1e-10)
         assert value <= bound + 1e-10
 
@@ -233,6 +239,12 @@ def test_oren_nayar_gains_at_most():
     assert bound.max() == pytest.approx(1.0152, abs=5e-5)
     assert sigma[bound.argmax()] == pytest.approx(0.20, abs=5e-3)
     assert np.all(oren_nayar_albedo(sigma[:, None], np.linspace(0, 1.57, 300))[0] <= bound[:, None] + 1e-12)
+
+
+@pytest.mark.parametrize("r", [0.0, 0.3, 1.0])
+def test_eon_keeps_energy(r):
+    for theta_o in (0.0, 0.4, 1.2, PI / 2 - 1e-6):
+        assert albedo_between_corners(Diffuse(albedo=1, r=r, diffuse="eon"), theta_o) == pytest.approx(1, abs=1e-10)
 
 
 # --- Fresnel ---------------------------------------------------------------------------------------------------------

@@ -32,7 +32,7 @@ ONLY_NUMPY = {
 ONLY_GLSL = {
     "ndf_beckmann": {"leading"},  # of float32's rounding
 }
-COLORS = {"f", "F", "tonemap", "srgb_encode"}
+COLORS = {"f", "diffuse_f", "F", "tonemap", "srgb_encode"}
 """Functions whose components are compared each; other vectors are compared relative to their length."""
 
 
@@ -137,6 +137,8 @@ DRAWS = {
     "c": COSINE,
     "F0": either(decades(1e-6, 1), uniform(0, 1)),
     "sigma": either(decades(1e-4, 1), uniform(0, 1)),
+    "r": either(ZERO, uniform(0, 1)),
+    "albedo": either(ZERO, uniform(0, 1)),
     "Lambda_o": either(ZERO, decades(1e-6, 1e4)),
     "Lambda_i": either(ZERO, decades(1e-6, 1e4)),
     "color": decades(1e-4, 1e3),

@@ -1,7 +1,9 @@
-"""Slot diffuse: Lambert, the same radiance in all directions."""
+"""Slot diffuse: f of a diffuse law in 1/sr, both directions above the horizon. Lambert: the same radiance in all directions."""
 
 import numpy as np
 
+from .common import INV_PI
 
-def diffuse_factor(wo, wi, sigma):
-    return np.ones(np.broadcast_shapes(wo.shape[:-1], wi.shape[:-1]))
+
+def diffuse_f(wo, wi, albedo, sigma, r):
+    return INV_PI * np.asarray(albedo) * np.ones_like(wo)

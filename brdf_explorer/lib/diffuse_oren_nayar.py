@@ -7,11 +7,12 @@ at most 1.0152 (sigma = 0.20).
 
 import numpy as np
 
-from .common import dot
+from .common import INV_PI, dot
 
 
-def diffuse_factor(wo, wi, sigma):
+def diffuse_f(wo, wi, albedo, sigma, r):
     s2 = np.square(sigma)
     A = 1 - 0.5 * s2 / (s2 + 0.33)
     B = 0.45 * s2 / (s2 + 0.09)
-    return A + B * np.maximum(dot(wo[..., :2], wi[..., :2]), 0.0) / np.maximum(wo[..., 2], wi[..., 2])
+    factor = A + B * np.maximum(dot(wo[..., :2], wi[..., :2]), 0.0) / np.maximum(wo[..., 2], wi[..., 2])
+    return INV_PI * np.asarray(albedo) * factor[..., None]

@@ -1,4 +1,4 @@
-// Diffuse reflection: f = albedo / pi times the slot's factor. Leaves out light that leaves the body elsewhere.
+// Diffuse reflection: the slot's law, diffuse_f, in 1/sr. Leaves out light that leaves the body elsewhere.
 #include "params.glsl"
 #include "lib/common.glsl"
 #include "lib/diffuse_{diffuse}.glsl"
@@ -6,7 +6,7 @@
 
 vec3 f(vec3 wo, vec3 wi) {
   if (wo.z <= HORIZON || wi.z <= HORIZON) return vec3(0.0);
-  return material.albedo * (INV_PI * diffuse_factor(wo, wi, material.sigma));
+  return diffuse_f(wo, wi, material.albedo, material.sigma, material.r);
 }
 
 float pdf(vec3 wo, vec3 wi) {
@@ -16,6 +16,5 @@ float pdf(vec3 wo, vec3 wi) {
 
 vec3 sample_f(vec3 wo, vec2 u, out vec3 wi) {
   wi = cosine_hemisphere(u);
-  if (wo.z <= HORIZON || wi.z <= HORIZON) return vec3(0.0);
-  return material.albedo * diffuse_factor(wo, wi, material.sigma);
+  return PI * f(wo, wi);
 }
