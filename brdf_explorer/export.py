@@ -234,9 +234,11 @@ def figure_of(gpu, drawing):
             corner = (left, bottom)
             axes.add_patch(Rectangle(corner, right - left, top - bottom, color=item.color, linewidth=0, zorder=order))
         elif isinstance(item, Raster):
-            (left, bottom), (right, top) = item.corner, np.add(item.corner, item.target.size)
+            left, bottom, right, top = item.box
+            x0, y0, x1, y1 = item.part
+            pixels = gpu.pixels(item.target)[::-1][y0:y1, x0:x1, :3]
             extent = (left, right, bottom, top)
-            axes.imshow(gpu.pixels(item.target)[..., :3], extent=extent, interpolation="none", zorder=order)
+            axes.imshow(pixels, origin="lower", extent=extent, interpolation="none", zorder=order)
         else:
             look = {"color": item.color, "alpha": item.opacity, "linewidth": item.width}
             axes.plot(*item.points.T, **look, solid_capstyle="round", solid_joinstyle="round", zorder=order)

@@ -111,9 +111,16 @@ class Gpu:
         self.targets = {}
         self.buffers = {}
         self.arrays = {}
-        self.environment = None
+        self.sides = {}
         self.drawn = set()  # (program, size, format) of draws, for measure/cost.py, which empties it before some work
         self.costs = {}  # measured there
+
+    def beside(self, name):
+        """Another Gpu of this context, kept under a name: its targets are its own, programs and buffers are shared."""
+        if name not in self.sides:
+            self.sides[name] = side = Gpu(self.ctx)
+            side.programs, side.buffers, side.arrays = self.programs, self.buffers, self.arrays
+        return self.sides[name]
 
     @property
     def device(self):

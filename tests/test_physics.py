@@ -8,7 +8,7 @@ from numpy.polynomial.legendre import leggauss
 from oracles.cases import CASES
 
 from brdf_explorer.lib import fresnel, slot
-from brdf_explorer.lib.colormap import viridis
+from brdf_explorer.lib.colormap import diverging, viridis
 from brdf_explorer.lib.common import PI, dot, length, normalize, vec
 from brdf_explorer.measure.albedo import albedo
 from brdf_explorer.measure.grid import direction
@@ -382,6 +382,12 @@ def test_viridis_is_off_by():
     colormaps = pytest.importorskip("matplotlib").colormaps
     x = np.linspace(0, 1, 256)
     assert np.abs(viridis(x) - colormaps["viridis"](x)[:, :3]).max() == pytest.approx(0.0225, abs=1.1e-4)
+
+
+def test_diverging_is_colorbrewer(gpu):
+    x = np.linspace(-1, 1, 256)
+    known = pytest.importorskip("matplotlib").colormaps["RdBu_r"](np.arange(256))[:, :3]
+    np.testing.assert_allclose(diverging(x), known, atol=1e-3)  # whose colours are entries of a table
 
 
 def test_stable_forms_in_float32(gpu):

@@ -40,6 +40,7 @@ SCREENS = {
     "lobe-dark-log": ("lobe", state("copper", theme="dark").with_view("lobe", radius="log", quantity="f_cos")),
     "lobe-sharp": ("lobe", State((NARROW,)).with_view("lobe", zoom=2.0)),
     "lobe-anisotropic": ("lobe", at(BRUSHED, theta_o=65.0, phi_o=30.0).with_view("lobe", azimuth=20.0, elevation=50.0)),
+    "compare-light": ("compare", replace(state("gold"), materials=COMPARED)),
     "factors-light": ("factors", state("gold")),
     "factors-dark": ("factors", at(state("chrome", theme="dark"), theta_o=70.0).with_view("factors", axis="linear")),
     "hemisphere-light": ("hemisphere", state("gold")),

@@ -161,6 +161,7 @@ DRAWS = {
     "sum_with_cap.v": hemisphere,
     "cut": either(ZERO, decades(1e-8, 1), uniform(0, 1)),
     "viridis.x": uniform(-0.1, 1.1),
+    "diverging.x": uniform(-1.1, 1.1),
     "environment_uv.w": sphere,
     "environment_direction.u": uniform(0, 1),
     "environment_direction.s": COSINE,

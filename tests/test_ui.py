@@ -398,7 +398,7 @@ def play(folder, what):
 
     Writes a screenshot, and outcomes.json: name of an act -> "" or what went wrong.
     """
-    from imgui_bundle import hello_imgui
+    from imgui_bundle import hello_imgui, imgui
     from imgui_bundle.immapp import testing  # isort: skip, before glfw
     import glfw
     from PIL import Image
@@ -425,6 +425,10 @@ def play(folder, what):
 
     def acts(ctx):
         user.ctx = ctx
+        engine = imgui.test_engine.get_io(hello_imgui.get_imgui_test_engine())
+        engine.config_watchdog_kill_test = engine.config_watchdog_kill_app = (
+            280.0  # seconds, on a machine that does much else
+        )
         user.yield_(5)
         user.pictures()
         for name, function in ACTS.items() if what == "acts" else ():

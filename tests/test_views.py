@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PIL import ImageFont
 
+from brdf_explorer.export import font
 from brdf_explorer.glsl import Source
 from brdf_explorer.lib.srgb import srgb_decode, srgb_encode
 from brdf_explorer.measure import albedo
@@ -15,7 +16,7 @@ from brdf_explorer.measure.grid import direction
 from brdf_explorer.model import Invalid
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Directions, Light, Look, Material, State, load
-from brdf_explorer.ui.gestures import linked
+from brdf_explorer.ui.gestures import linked, swipe
 from brdf_explorer.views import VIEWS
 from brdf_explorer.views.develop import develop
 from brdf_explorer.views.drawing import Drawing
@@ -228,3 +229,68 @@ def test_factors_say_that_d_cos_integrates_to_1_and_when_there_are_none(gpu):
 
     assert "∫ D cos θ dω = 1.0000000000" in words("gold")
     assert any("No factors to show" in w for w in words("chalk"))
+
+
+def two(**models):
+    return State(tuple(Material(name, model) for name, model in models.items()))
+
+
+GREY = two(dark=DIFFUSE(albedo=0.4), bright=DIFFUSE(albedo=0.8))
+
+
+def words_of(picture):
+    return [label.text for label in picture.labels]
+
+
+def test_compare_tells_how_far_two_materials_are_apart(gpu):
+    words = words_of(last(GREY.views["compare"].pictures(gpu, GREY, (900, 700))))
+    assert {"relative RMSE of f cos θ: 1", "largest relative error of f: 1", "largest error of albedo: 0.4"} <= set(
+        words
+    )
+    assert "sphere's mean: +1e+02 %" in words
+    same = two(one=MICROFACET(), other=MICROFACET())
+    words = words_of(last(same.views["compare"].pictures(gpu, same, (900, 700))))
+    assert {"relative RMSE of f cos θ: 0", "relative RMSE of the sphere: 0"} <= set(words)
+
+
+def test_compare_shows_a_left_of_the_line_and_b_right_of_it(gpu):
+    state = GREY.with_view("compare", show="sphere", swipe=0.3)
+    picture = last(state.views["compare"].pictures(gpu, state, (400, 400)))
+    pixels = gpu.pixels(picture.target)[..., :3].astype(int)
+    (left, bottom, right, top), side = state.views["compare"].boxes((400, 400))[0]["sphere"], 0
+    side = int(min(right - left, top - bottom))
+    for active, share in ((0, 0.2), (1, 0.5)):
+        one = replace(state, active=active)
+        sphere = last(one.views["sphere"].pictures(gpu, one, (side, side)))
+        expected = gpu.pixels(develop(gpu, sphere, one.look))[side // 2, int(share * side), :3]
+        x = round((left + right - side) / 2) + int(share * side)
+        assert pixels[400 - round((bottom + top - side) / 2) - side + side // 2, x].tolist() == expected.tolist()
+
+
+def test_compare_takes_the_material_it_is_told_or_the_next(gpu):
+    state = State((Material("a"), Material("b"), Material("c")), active=1)
+    for other, expected in ((1, 0), (2, 2), (3, 2), (9, 2)):
+        assert state.with_view("compare", other=other).views["compare"].against(state) == expected
+    assert State().views["compare"].against(State()) is None
+    assert "Nothing to compare with:" in words_of(last(State().views["compare"].pictures(gpu, State(), (300, 200))))
+
+
+@pytest.mark.parametrize("size", [(1200, 480), (600, 640), (330, 460)])
+def test_compare_has_room_for_its_words(gpu, size):
+    picture = last(GREY.views["compare"].pictures(gpu, GREY, size))
+    boxes = []
+    for label in picture.labels:
+        width, height = font(label.size).getlength(label.text), label.size
+        x, y = label.x - label.anchor[0] * width, label.y - label.anchor[1] * height
+        boxes.append((x, y, x + width, y + height, label.text))
+    for box in boxes:
+        assert box[0] >= 0 and box[1] >= 0 and box[2] <= size[0] and box[3] <= size[1], box
+    for a, b in combinations(boxes, 2):
+        assert a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] + 2 or b[3] <= a[1] + 2, (a, b)
+
+
+def test_a_drag_moves_the_line(gpu):
+    view = GREY.views["compare"]
+    left, _, right, _ = view.boxes((600, 640))[0]["sphere"]
+    assert swipe(GREY, view, ((left + right) / 2, 100), (600, 640), 1.0).views["compare"].swipe == 0.5
+    assert swipe(GREY, view, (-50, 100), (600, 640), 1.0).views["compare"].swipe == 0.0

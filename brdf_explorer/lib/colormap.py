@@ -1,4 +1,5 @@
-"""The colour map viridis (Smith and van der Walt 2015, CC0) as 17 of its colours joined linearly; sRGB. Off by at most 0.0225."""
+"""Colour maps, sRGB: viridis (Smith and van der Walt 2015, CC0) as 17 of its colours joined linearly, off by at most 0.0225;
+and RdBu of ColorBrewer (Brewer 2002, Apache 2.0), 11 colours joined linearly, for values of both signs."""
 
 import numpy as np
 
@@ -23,8 +24,29 @@ VIRIDIS = np.array(
         (0.9932, 0.9062, 0.1439),
     ]
 )
+RDBU = np.array(
+    [
+        (0.0196, 0.1882, 0.3804),
+        (0.1294, 0.4000, 0.6745),
+        (0.2627, 0.5765, 0.7647),
+        (0.5725, 0.7725, 0.8706),
+        (0.8196, 0.8980, 0.9412),
+        (0.9686, 0.9686, 0.9686),
+        (0.9922, 0.8588, 0.7804),
+        (0.9569, 0.6471, 0.5098),
+        (0.8392, 0.3765, 0.3020),
+        (0.6980, 0.0941, 0.1686),
+        (0.4039, 0.0000, 0.1216),
+    ]
+)
 
 
 def viridis(x):
     place = np.clip(x, 0.0, 1.0) * 16
     return np.stack([np.interp(place, np.arange(17), VIRIDIS[:, c]) for c in range(3)], axis=-1)
+
+
+def diverging(x):
+    """Blue for -1, nearly white for 0, red for 1."""
+    place = np.clip(0.5 * x + 0.5, 0.0, 1.0) * 10
+    return np.stack([np.interp(place, np.arange(11), RDBU[:, c]) for c in range(3)], axis=-1)

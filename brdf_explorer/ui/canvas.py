@@ -125,6 +125,8 @@ class Canvas:
                 return gestures.orbit(state, view, delta, scale)
             if self.name == "polar":
                 return gestures.viewer(state, view, at, size, scale)
+            if self.name == "compare":
+                return gestures.swipe(state, view, at, size, scale)
         if hovered and io.mouse_wheel and self.name == "lobe":
             return gestures.zoom(state, view, io.mouse_wheel)
         return state

@@ -4,8 +4,9 @@ import math
 from dataclasses import replace
 
 from ..model import declared
+from ..views.compare import side_of
 
-DRAGGED = ("sphere", "lobe", "polar")  # views that a drag changes
+DRAGGED = ("sphere", "lobe", "polar", "compare")  # views that a drag changes
 ORBIT = 0.4  # degrees that a point of drag turns a camera or an environment
 
 
@@ -58,3 +59,13 @@ def viewer(state, view, at, size, scale):
     limits = declared(state.directions)["theta_o"]
     theta = min(max(round(theta, 1), limits.low), limits.high)
     return replace(state, directions=replace(state.directions, theta_o=theta))
+
+
+def swipe(state, view, at, size, scale):
+    """The line between the spheres of `compare` under the mouse."""
+    boxes, *_ = view.boxes(size, scale)
+    if "sphere" not in boxes:
+        return state
+    left, _, right, _ = boxes["sphere"]
+    share = 0.5 + (at[0] - (left + right) / 2) / side_of(boxes)
+    return state.with_view("compare", swipe=round(min(max(share, 0.0), 1.0), 3))

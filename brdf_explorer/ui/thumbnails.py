@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-from ..gpu import Gpu
 from ..model import Invalid
 from ..state import load
 from ..views.develop import develop
@@ -15,8 +14,7 @@ class Thumbnails:
     """Framebuffers by preset and theme."""
 
     def __init__(self, gpu):
-        self.gpu = Gpu(gpu.ctx)  # its targets are not those of the panels' pictures
-        self.gpu.programs = gpu.programs
+        self.gpu = gpu.beside("thumbnails")
         self.drawn = {}
         self.spent = False
 

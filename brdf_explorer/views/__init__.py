@@ -1,5 +1,6 @@
 """The views, one module each. `VIEWS` lists them by name."""
 
+from .compare import Compare
 from .factors import Factors
 from .hemisphere import Hemisphere
 from .lobe import Lobe
@@ -7,4 +8,4 @@ from .polar import Polar
 from .sphere import Sphere
 from .stability import Stability
 
-VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Stability)}
+VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Compare, Stability)}

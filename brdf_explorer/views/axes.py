@@ -74,8 +74,10 @@ class Axes:
     def line(self, x, y, color, width=1.6, opacity=1.0):
         """A polyline through values, cut at the frame's foot and head; NaN ends a piece."""
         points = self.place(x, y)
+        out = np.sign(points[:, 1] - np.clip(points[:, 1], self.box[1], self.box[3]))
+        hidden = (out != 0) & (np.roll(out, 1) == out) & (np.roll(out, -1) == out)  # both its ends lie beyond the frame
         points[:, 1] = np.clip(points[:, 1], self.box[1], self.box[3])
-        known = np.isfinite(points).all(axis=1)
+        known = np.isfinite(points).all(axis=1) & ~hidden
         for piece in np.split(np.arange(len(points)), np.flatnonzero(np.diff(known)) + 1):
             if len(piece) > 1 and known[piece[0]]:
                 self.drawing.stroke(points[piece], color, width, opacity)

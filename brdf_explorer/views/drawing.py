@@ -21,10 +21,19 @@ class Fill:
 
 @dataclass(frozen=True)
 class Raster:
-    """A framebuffer of sRGB colours (8 bits), drawn pixel by pixel with its lower left corner at `corner`, in whole pixels."""
+    """A framebuffer of sRGB colours (8 bits), or a part of it, drawn pixel by pixel with its lower left corner at `corner`.
+
+    part: left, bottom, right, top in pixels of the framebuffer.
+    """
 
     corner: tuple[int, int]
     target: object
+    part: tuple[int, int, int, int]
+
+    @property
+    def box(self):
+        """Where it lies in the drawing."""
+        return (*np.add(self.corner, self.part[:2]).tolist(), *np.add(self.corner, self.part[2:]).tolist())
 
 
 class Drawing:
@@ -61,8 +70,11 @@ class Drawing:
         """A disc about `at` (2,), its diameter in points."""
         self.stroke([at, at], color, diameter, opacity)
 
-    def raster(self, corner, target):
-        self.items.append((self.passes, Raster((round(corner[0]), round(corner[1])), target)))
+    def raster(self, corner, target, part=None):
+        """A framebuffer, the lower left corner of the whole at `corner`, or the part of it within a box of its pixels."""
+        self.items.append(
+            (self.passes, Raster((round(corner[0]), round(corner[1])), target, part or (0, 0, *target.size)))
+        )
 
     def text(self, words, at, color="ink", anchor=(0.5, 0.5), size=12.0):
         """A line of text; anchor: the share of it left of and above `at`; size: its height in points."""
@@ -96,11 +108,9 @@ class Drawing:
 
 
 def draw_raster(gpu, target, raster):
-    left, bottom = raster.corner
-    width, height = raster.target.size
     program = gpu.program(assemble("views/raster.frag"))
     picture = {"picture": raster.target.color_attachments[0]}
-    gpu.draw(program, target, {"corner": raster.corner}, picture, box=(left, bottom, left + width, bottom + height))
+    gpu.draw(program, target, {"corner": raster.corner}, picture, box=raster.box)
 
 
 class Drawn(View):

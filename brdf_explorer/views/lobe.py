@@ -33,47 +33,18 @@ class Lobe(Diagram):
     def pictures(self, gpu, state, size, scale=1.0):
         colors = PALETTES[state.look.theme]
         values = table(gpu, state.model, state.directions)
-        peak = float((luminance(values.f) * self.factor(values.grid.wi)).max())
+        peak = self.peak(values)
         share = 1 / peak if peak > 0 else 0.0
         target = gpu.target("lobe", size, 4, "f1")
-        target.clear(*rgb(colors["paper"]), 1.0)
         camera = Camera(self, size, scale)
-
-        def stroke(points, color, width, opacity=1.0):
-            return Stroke(camera.pixels(points), colors[color], width * scale, opacity)
-
-        turn = np.radians(np.arange(0, 361, 3))
-        ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(turn.size)], axis=-1)
-        disc = [stroke(ring * r, "grid", 1.0) for r in (0.25, 0.5, 0.75)]
-        disc += [stroke([-ring[i], ring[i]], "grid", 1.0) for i in range(0, 60, 10)]
-        disc.append(stroke(ring, "muted", 1.0))
-
-        def pointers(opacity):
-            strokes = []
-            for w, color in ((np.array([0, 0, 1.0]), "ink"), (values.wo, "accent")):
-                tips = arrow(*camera.pixels([0 * w, ARROW * w]), scale)
-                strokes += [Stroke(points, colors[color], 1.6 * scale, opacity) for points in tips]
-            return strokes
-
-        mirror = values.wo * [-1, -1, 1]
-        dashes = [stroke([mirror * i / 28, mirror * (i + 1) / 28], "accent", 1.0) for i in range(0, 32, 2)]
-        labels = []
-        for name, w, color in (
-            ("ωo", values.wo, "accent"),
-            ("n", np.array([0, 0, 1.0]), "ink"),
-            ("ωr", mirror, "accent"),
-        ):
-            start, tip = camera.pixels([0 * w, ARROW * w])
-            x, y = tip + 12 * scale * (tip - start) / max(np.linalg.norm(tip - start), 1e-9)
-            if all(np.hypot(x - b.x, size[1] - y - b.y) > 20 * scale for b in labels):  # at theta_o = 0 one is enough
-                labels.append(Label(name, float(x), float(size[1] - y), colors[color], size=13.0))
+        below, above, labels = stage(camera, values.wo, colors)
         _, wi, f = values.plane()
         profile = luminance(f) * self.factor(wi) * share
-        outline = stroke(wi * radius(profile, self.radius, self.decades)[:, None], "ink", 1.0, 0.45)
-        below, above = [*disc, *dashes, *pointers(1.0)], [outline, *pointers(0.25)]  # seen through the lobe
+        outline = wi * radius(profile, self.radius, self.decades)[:, None]
+        above.append(camera.stroke(outline, colors["ink"], 1.0, 0.45))
         note = "albedo " + "  ".join(f"{a:.3f}" for a in values.albedo)
         over = gpu.program(assemble("views/over.frag"))
-        for layer, done in self.surfaces(gpu, size, values, camera, share):
+        for layer, done in self.surfaces(gpu, values, camera, share):
             target.clear(*rgb(colors["paper"]), 1.0)
             draw_lines(gpu, target, below)
             picture = {"picture": layer.color_attachments[0]}
@@ -82,13 +53,21 @@ class Lobe(Diagram):
             legend = self.draw_bar(gpu, target, size, scale, peak, colors)
             yield Picture(target, labels=labels + legend, note=note, done=done)
 
-    def surfaces(self, gpu, size, values, camera, share):
-        """The lobe's triangles as (framebuffer of colour and coverage, done): one drawing, then the mean of several."""
+    def peak(self, values):
+        """The largest of what the radius shows of a Table."""
+        return float((luminance(values.f) * self.factor(values.grid.wi)).max())
+
+    def surfaces(self, gpu, values, camera, share, paint="value", uniforms=None):
+        """The lobe's triangles as (framebuffer of colour and coverage, done): one drawing, then the mean of several.
+
+        share: radius 1 over the largest value. paint: "value", the map's colours, or "plain", of the uniform `ink`.
+        """
+        size = camera.size
         vertex = assemble("views/lobe.vert", {"quantity": self.quantity, "radius": self.radius})
-        program = gpu.program(assemble("views/lobe.frag"), vertex)
+        program = gpu.program(assemble("views/lobe.frag", {"paint": paint}), vertex)
         add = gpu.program(assemble("views/over.frag"))
         textures = {"directions": values.directions, "values": values.target.color_attachments[0]}
-        uniforms = {"share": share, "decades": float(self.decades)}
+        uniforms = {"share": share, "decades": float(self.decades)} | (uniforms or {})
         once = gpu.target("lobe.surface", size, 4, "f1", depth=True)
         mean = gpu.target("lobe.mean", size, 4, "f2")
         for n in range(PASSES):
@@ -125,26 +104,55 @@ class Lobe(Diagram):
         return labels
 
 
+def stage(camera, wo, colors):
+    """What stands around a lobe: strokes below it, strokes over it, and Labels of the normal, the viewer and its mirror image."""
+    turn = np.radians(np.arange(0, 361, 3))
+    ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(turn.size)], axis=-1)
+    below = [camera.stroke(ring * r, colors["grid"]) for r in (0.25, 0.5, 0.75)]
+    below += [camera.stroke([-ring[i], ring[i]], colors["grid"]) for i in range(0, 60, 10)]
+    below.append(camera.stroke(ring, colors["muted"]))
+    normal, mirror = np.array([0.0, 0.0, 1.0]), wo * [-1, -1, 1]
+    below += [camera.stroke([mirror * i / 28, mirror * (i + 1) / 28], colors["accent"]) for i in range(0, 32, 2)]
+    above = []
+    for w, color in ((normal, "ink"), (wo, "accent")):
+        for points in arrow(*camera.pixels([0 * w, ARROW * w]), camera.scale):
+            below.append(Stroke(points, colors[color], 1.6 * camera.scale))
+            above.append(Stroke(points, colors[color], 1.6 * camera.scale, 0.25))  # seen through the lobe
+    labels = []
+    for name, w, color in (("ωo", wo, "accent"), ("n", normal, "ink"), ("ωr", mirror, "accent")):
+        start, tip = camera.pixels([0 * w, ARROW * w])
+        x, y = tip + 12 * camera.scale * (tip - start) / max(np.linalg.norm(tip - start), 1e-9)
+        y = camera.size[1] - y
+        if all(np.hypot(x - b.x, y - b.y) > 20 * camera.scale for b in labels):  # at theta_o = 0 one is enough
+            labels.append(Label(name, float(x), float(y), colors[color], size=13.0))
+    return below, above, labels
+
+
 class Camera:
     """An orthographic camera that looks at the hemisphere; directions in the surface's frame, z up."""
 
-    def __init__(self, view, size, scale):
+    def __init__(self, view, size, scale, bar=BAR):
+        """view: the Lobe's options; bar: points at the right that are kept free."""
         azimuth, elevation = np.radians(view.azimuth), np.radians(view.elevation)
         ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
         self.eye = np.array([ce * ca, ce * sa, se])
         self.right = np.array([-sa, ca, 0.0])
         self.up = np.array([-se * ca, -se * sa, ce])
-        self.size = size
+        self.size, self.scale = size, scale
         # the box of the disc and of an upright arrow fits beside the legend, with room for labels
         low, high = -se, max(ARROW * ce, se)
-        room = np.array([size[0] - (BAR + 64) * scale, size[1] - 72 * scale])
+        room = np.array([size[0] - (bar + 64) * scale, size[1] - 72 * scale])
         self.unit = max(min(room[0] / (2 * ARROW), room[1] / (high - low)), 1.0) * view.zoom
-        self.center = np.array([(size[0] - BAR * scale) / 2, size[1] / 2 - self.unit * (low + high) / 2])
+        self.center = np.array([(size[0] - bar * scale) / 2, size[1] / 2 - self.unit * (low + high) / 2])
 
     def pixels(self, points):
         """Pixels (n, 2) from the bottom left of points (n, 3)."""
         points = np.asarray(points, dtype=float)
         return self.center + self.unit * np.stack([points @ self.right, points @ self.up], axis=-1)
+
+    def stroke(self, points, color, width=1.0, opacity=1.0):
+        """The Stroke through points (n, 3), `width` points wide."""
+        return Stroke(self.pixels(points), color, width * self.scale, opacity)
 
     def uniforms(self, jitter):
         """The camera's uniforms for a picture moved by `jitter` pixels."""

@@ -95,6 +95,6 @@ def standard_error(mean, half):
 def environment_textures(gpu, light):
     """The textures of the light's environment, kept with the Gpu until another one is asked for."""
     found = environment(light.environment, light.file)
-    if gpu.environment is None or gpu.environment[0] is not found:
-        gpu.environment = (found, {"map": gpu.texture(found.map), "cdf": gpu.texture(found.cdf)})
-    return gpu.environment[1]
+    if gpu.buffers.get("environment", (None,))[0] is not found:
+        gpu.buffers["environment"] = (found, {"map": gpu.texture(found.map), "cdf": gpu.texture(found.cdf)})
+    return gpu.buffers["environment"][1]

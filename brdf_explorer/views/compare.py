@@ -1,0 +1,231 @@
+"""Two materials A and B: their spheres with a line between them, their lobes and slices over each other, and the difference."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..glsl import assemble
+from ..lib.srgb import luminance
+from ..measure import error
+from ..model import Invalid, choice, param
+from .axes import Axes, Axis
+from .develop import develop
+from .diagram import QUANTITIES, number
+from .drawing import Drawing, Drawn
+from .lines import draw_lines
+from .lobe import Camera, stage
+from .picture import PALETTES, rgb
+from .polar import LETTER, NODES
+from .table import table
+
+PARTS = ("sphere", "difference", "lobes", "curves")
+THROUGH = 0.55  # opacity of the lobe of B, through which A is seen
+LEAST = 1e-12  # of the reference's mean: a difference below it has no colours
+GAP, HEAD = 14, 24  # points between the parts, and above each for its title
+NUMBERS, WORDS = 5, 218  # lines of numbers below all, and points that one is wide
+
+
+@dataclass(frozen=True)
+class Compare(Drawn):
+    """The active material A against another one B, in the same light and from the same direction."""
+
+    title = "Compare"
+    instrument = True
+
+    show: str = choice("all", ("all", *PARTS), "what is shown")
+    other: int = param(2, 1, 99, "number of B in the list of materials; the next after A if that is A, or not there")
+    swipe: float = param(0.5, 0.0, 1.0, "place of the line: left of it the sphere is A, right of it B")
+    axis: str = choice("log", ("log", "linear"), "scale of f in the slices; a logarithmic one shows the tails")
+    decades: int = param(5, 1, 12, "decades that a logarithmic axis shows")
+
+    def against(self, state):
+        """The number of B in the list of materials, from 0, or None where there is only one."""
+        count = len(state.materials)
+        if count < 2:
+            return None
+        return self.other - 1 if self.other <= count and self.other - 1 != state.active else (state.active + 1) % count
+
+    def boxes(self, size, scale=1.0):
+        """Box of each part by name, and columns and rows of the numbers below them."""
+        parts = PARTS if self.show == "all" else (self.show,)
+        columns = max(int((size[0] / scale - 12) // WORDS), 1)
+        rows = -(-NUMBERS // columns)
+        return dict(zip(parts, layout(size, scale, len(parts), 16 + 16 * rows), strict=True)), columns, rows
+
+    def shows(self, state):
+        return (self, state.materials, state.active, state.directions, state.light, state.look, state.views["sphere"])
+
+    def drawings(self, gpu, state, size, scale=1.0):
+        b = self.against(state)
+        if b is None:
+            draw = Drawing(size, scale, state.look.theme)
+            words = "Nothing to compare with:", "add a material to the list, or a copy of this one"
+            for line, text in enumerate(words):
+                draw.text(text, (size[0] / 2, size[1] / 2 + (9 - 18 * line) * scale), "muted")
+            yield draw, "", True
+            return
+        states = state, replace(state, active=b)
+        boxes, columns, rows = self.boxes(size, scale)
+        side = side_of(boxes)
+        sides = gpu.beside("compare A"), gpu.beside("compare B")
+        lobes = both_lobes(gpu, sides, states, boxes["lobes"], scale) if "lobes" in boxes else None
+        slices = [table(gpu, s.model, s.directions, rays=2, nodes=NODES).plane() for s in states]
+        numbers = difference_of_values(*(s.model for s in states))
+        runs = [s.views["sphere"].pictures(g, s, (side, side), scale) for g, s in zip(sides, states, strict=True)]
+        one, other, done = next(runs[0]), next(runs[1]), False
+        while not done:
+            draw = Drawing(size, scale, state.look.theme)
+            done = one.done and other.done
+            if "sphere" in boxes:
+                self.spheres(draw, boxes["sphere"], states, sides, (one, other))
+            if "lobes" in boxes:
+                self.lobes(draw, boxes["lobes"], states, lobes)
+            if "curves" in boxes:
+                self.curves(draw, boxes["curves"], states, slices)
+            words = numbers
+            if "difference" in boxes:
+                targets = [g.target("sphere", (side, side)) for g in sides]  # without what lies behind
+                pixels = [gpu.pixels(target) for target in targets]
+                self.difference(draw, gpu, boxes["difference"], targets, pixels)
+                words = [*numbers, *difference_of_pictures(*pixels)] if done else numbers
+            for i, text in enumerate(words):
+                at = (12 + i % columns * WORDS, 6 + 16 * (rows - i // columns))
+                draw.text(text, np.multiply(at, scale) - [0, 8 * scale], "muted", (0.0, 0.5), 11.5)
+            yield draw, "", done
+            one, other = next(runs[0], one), next(runs[1], other)  # one of them may be done before the other
+
+    def spheres(self, draw, box, states, sides, pictures):
+        """A left of the line, B right of it."""
+        s = draw.scale
+        left, bottom, right, top = box
+        developed = [develop(g, p, state.look) for g, p, state in zip(sides, pictures, states, strict=True)]
+        width, height = developed[0].size
+        corner = np.round([(left + right - width) / 2, (bottom + top - height) / 2])
+        line = int(round(self.swipe * width))
+        draw.raster(corner, developed[0], (0, 0, line, height))
+        draw.raster(corner, developed[1], (line, 0, width, height))
+        at = corner[0] + line
+        draw.stroke([(at, corner[1]), (at, corner[1] + height)], draw.colors["paper"], 1.5)
+        for state, name, edge, anchor in zip(states, "AB", (left, right), (0.0, 1.0), strict=True):
+            words = cut(f"{name}  {state.material.name}", (right - left) / (2 * s))
+            draw.text(words, (edge, top + 12 * s), color_of(state, draw.colors), (anchor, 0.5), 12.5)
+
+    def lobes(self, draw, box, states, lobes):
+        """Both lobes to one scale."""
+        left, bottom, right, top = box
+        target, labels = lobes
+        height = target.size[1]
+        draw.raster((left, bottom), target)
+        quantity = QUANTITIES[states[0].views["lobe"].quantity]
+        draw.text(quantity, (left, top + 12 * draw.scale), "ink", (0.0, 0.5), 12.5)
+        for label in labels:
+            at = (round(left) + label.x, round(bottom) + height - label.y)
+            draw.text(label.text, at, label.color, label.anchor, label.size)
+
+    def curves(self, draw, box, states, slices):
+        """f along the plane of incidence."""
+        s = draw.scale
+        left, bottom, right, top = box
+        f = [luminance(f) for _, _, f in slices]
+        high = 1.3 * max(float(v.max()) for v in f) or 1.0
+        low = high / 10**self.decades if self.axis == "log" else 0.0
+        frame = (left + 44 * s, bottom + 36 * s, max(right - 8 * s, left + 52 * s), max(top - 4 * s, bottom + 40 * s))
+        axes = Axes(draw, frame, Axis(-90.0, 90.0, "θi in the plane of incidence"), Axis(low, high, "", self.axis))
+        angles = np.arange(-90, 91, 30)
+        axes.frame(angles, [f"{abs(a)}°" for a in angles])
+        draw.text("f  [1/sr]", (left, top + 12 * s), "ink", (0.0, 0.5), 12.5)
+        draw.over()
+        for state, (theta, _, _), v in zip(states, slices, f, strict=True):
+            axes.line(np.degrees(theta), v, color_of(state, draw.colors), 2.0)
+
+    def difference(self, draw, gpu, box, targets, pixels):
+        """B less A, its luminance over A's mean."""
+        s = draw.scale
+        left, bottom, right, top = box
+        a, b = (luminance(p[..., :3].astype(float)) for p in pixels)
+        mean = a[pixels[0][..., 3] > 0].mean()
+        largest = max(float(np.quantile(np.abs(b - a), 0.999)), LEAST * max(mean, LEAST))
+        width, height = targets[0].size
+        target = gpu.target("compare difference", (width, height), 4, "f1")
+        uniforms = {"share": 1 / largest, "backdrop": rgb(draw.colors["paper"])}
+        textures = {"picture": targets[1].color_attachments[0], "reference": targets[0].color_attachments[0]}
+        gpu.draw(gpu.program(assemble("views/difference.frag")), target, uniforms, textures)
+        draw.raster(np.round([(left + right - width) / 2, (bottom + top - height) / 2]), target)
+        percent = f"±{number(100 * largest / mean, 2)} %" if mean > 0 else "A is black"
+        wide = (right - left) / s > 260
+        words = f"B less A (red: B is brighter), {percent} of A's mean" if wide else f"B less A, {percent}"
+        draw.text(words, (left, top + 12 * s), "ink", (0.0, 0.5), 12.5)
+
+
+def cut(words, room):
+    """Words that fit into `room` points, ending in an ellipsis if they are longer."""
+    letters = max(int(room / LETTER), 2)
+    return words if len(words) <= letters else words[: letters - 1].rstrip() + "…"
+
+
+def side_of(boxes):
+    """The side of a square picture in each of the boxes, pixels."""
+    return int(max(min(min(right - left, top - bottom) for left, bottom, right, top in boxes.values()), 8))
+
+
+def both_lobes(gpu, sides, states, box, scale):
+    """A framebuffer as large as the box with both lobes to one scale, A seen through B, and its Labels."""
+    colors = PALETTES[states[0].look.theme]
+    left, bottom, right, top = box
+    size = (max(int(right - left), 8), max(int(top - bottom), 8))
+    lobe = states[0].views["lobe"]
+    tables = [table(gpu, state.model, state.directions) for state in states]
+    peak = max(lobe.peak(t) for t in tables) or 1.0
+    camera = Camera(lobe, size, scale, bar=0)
+    below, above, labels = stage(camera, tables[0].wo, colors)
+    target = gpu.target("compare lobes", size, 4, "f1")
+    target.clear(*rgb(colors["paper"]), 1.0)
+    draw_lines(gpu, target, below)
+    over = gpu.program(assemble("views/over.frag"))
+    for state, t, side, share in zip(states, tables, sides, (1.0, THROUGH), strict=True):
+        *_, (layer, _) = lobe.surfaces(side, t, camera, 1 / peak, "plain", {"ink": rgb(color_of(state, colors))})
+        gpu.draw(over, target, {"share": share}, {"picture": layer.color_attachments[0]}, blend="premultiplied")
+    draw_lines(gpu, target, above)
+    return target, labels
+
+
+def color_of(state, colors):
+    """The colour of a state's active material, which it has in the slices, too."""
+    return colors["curves"][state.active % len(colors["curves"])]
+
+
+def layout(size, scale, count, foot):
+    """Boxes of the parts, (left, bottom, right, top) in pixels, over `foot` points: in the columns that make them largest."""
+
+    def side(columns):
+        return min(size[0] / columns, (size[1] - foot * scale) / -(-count // columns) - HEAD * scale)
+
+    columns = max(range(1, count + 1), key=side)
+    rows = -(-count // columns)
+    gap, head, foot = GAP * scale, HEAD * scale, foot * scale
+    width = (size[0] - (columns + 1) * gap) / columns
+    height = (size[1] - foot - rows * head) / rows
+    boxes = []
+    for i in range(count):
+        left, top = gap + i % columns * (width + gap), size[1] - head - i // columns * (height + head)
+        boxes.append((left, max(top - height, 0.0), left + max(width, 1.0), top))
+    return boxes
+
+
+def difference_of_values(a, b):
+    """Lines that say how far f of the model b is from that of a."""
+    alpha = np.minimum(a.slopes(), b.slopes())
+    found, reference = error.values(b, alpha), error.values(a, alpha)
+    return [
+        f"{m.title}: {number(m.function(found, reference), 2)}"
+        for m in (error.METRICS[n] for n in ("rmse", "maximum", "energy"))
+    ]
+
+
+def difference_of_pictures(a, b):
+    """Lines that say how far the picture b is from a."""
+    try:
+        rms, mean = error.METRICS["picture"].function(b, a), error.brightening(b, a)
+    except Invalid as reason:
+        return [str(reason)]
+    return [f"{error.METRICS['picture'].title}: {number(rms, 2)}", f"sphere's mean: {100 * mean:+.2g} %"]

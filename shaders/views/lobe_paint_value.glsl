@@ -1,0 +1,4 @@
+// Slot paint: the map's colour of the value.
+#include "lib/colormap.glsl"
+
+vec3 paint(float height) { return viridis(height); }
