@@ -4,6 +4,7 @@ import ctypes
 import ctypes.util
 import sys
 from contextlib import contextmanager
+from copy import copy
 
 import moderngl
 import numpy as np
@@ -126,6 +127,12 @@ class Gpu:
     def device(self):
         """Renderer and GL version, as the driver names them."""
         return f"{self.ctx.info['GL_RENDERER']}, OpenGL {self.ctx.info['GL_VERSION']}"
+
+    def apart(self):
+        """This Gpu with targets of its own: what is drawn with it meets no other picture of the same name."""
+        other = copy(self)
+        other.targets = {}
+        return other
 
     def program(self, fragment, vertex=None):
         """The linked program of two Sources, from the cache if their text was seen. Raises Invalid with file and line."""
