@@ -42,7 +42,7 @@ STEPS = (1, -1, 10, -10)
 where a formula that rounds more than once may end on the other side."""
 PARTS = {"pdf_wi", "weight_wi"}
 """Functions that are no rows: they are all of pdf and sample_f but for what has a row."""
-COLORS = ("f", "F", "sample_f")
+COLORS = ("f", "F", "sample_f", "diffuse_f")
 """Functions whose components are compared each; other vectors are directions, compared relative to their length."""
 
 
