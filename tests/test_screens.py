@@ -29,6 +29,12 @@ def at(state, **directions):
     return replace(state, directions=replace(state.directions, **directions))
 
 
+def rough(state, alpha, light):
+    """The state with another alpha and angle between light and eye."""
+    model = replace(state.model, alpha=(alpha, alpha))
+    return replace(state.with_model(model), light=replace(state.light, theta=light))
+
+
 SCREENS = {
     "sphere-light": ("sphere", state("gold")),
     "sphere-dark": ("sphere", state("copper", theme="dark", exposure=-1.0, tonemap="aces")),
@@ -58,6 +64,13 @@ SCREENS = {
     ),
     "polar-grazing": ("polar", at(state("gold"), theta_o=80.0).with_view("polar", quantity="f_cos")),
     "polar-sharp": ("polar", State((SHARP,)).with_view("polar", radius="log", decades=8)),
+    "microsurface-light": (
+        "microsurface",
+        rough(at(state("gold"), theta_o=65.0), 0.7, light=140.0).with_view(
+            "microsurface", show="surface", surface="gaussian"
+        ),
+    ),
+    "microsurface-profile": ("microsurface", rough(at(state("copper", theme="dark"), theta_o=65.0), 0.5, light=110.0)),
 }
 
 

@@ -123,7 +123,7 @@ class Canvas:
                 return gestures.turn(state, delta, scale)
             if self.name == "lobe":
                 return gestures.orbit(state, view, delta, scale)
-            if self.name == "polar":
+            if self.name in ("polar", "microsurface"):
                 return gestures.viewer(state, view, at, size, scale)
             if self.name == "compare":
                 return gestures.swipe(state, view, at, size, scale)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from ..model import declared
 from ..views.compare import side_of
 
-DRAGGED = ("sphere", "lobe", "polar", "compare")  # views that a drag changes
+DRAGGED = ("sphere", "lobe", "polar", "compare", "microsurface")  # views that a drag changes
 ORBIT = 0.4  # degrees that a point of drag turns a camera or an environment
 
 

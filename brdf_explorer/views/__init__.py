@@ -4,8 +4,9 @@ from .compare import Compare
 from .factors import Factors
 from .hemisphere import Hemisphere
 from .lobe import Lobe
+from .microsurface import Microsurface
 from .polar import Polar
 from .sphere import Sphere
 from .stability import Stability
 
-VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Compare, Stability)}
+VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Compare, Stability, Microsurface)}

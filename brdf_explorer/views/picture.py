@@ -21,6 +21,7 @@ PALETTES = {
         "red": "#dc2626",
         "green": "#15803d",
         "blue": "#2563eb",
+        "purple": "#7e22ce",
         "curves": ("#2563eb", "#c2410c", "#0f766e", "#a21caf", "#4d7c0f", "#b91c1c"),
     },
     "dark": {
@@ -34,6 +35,7 @@ PALETTES = {
         "red": "#f87171",
         "green": "#4ade80",
         "blue": "#60a5fa",
+        "purple": "#c084fc",
         "curves": ("#60a5fa", "#fb923c", "#2dd4bf", "#e879f9", "#a3e635", "#f87171"),
     },
 }
