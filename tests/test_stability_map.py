@@ -6,15 +6,19 @@ And a cell leads to its worst point.
 import json
 import os
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.cases import CASES, case_label
 from test_oracles import Textbook
 
+from brdf_explorer.cli import main
+from brdf_explorer.export import font, labelled, render
 from brdf_explorer.glsl import assemble
 from brdf_explorer.measure import stability as measured
 from brdf_explorer.measure.stability import (
@@ -31,7 +35,7 @@ from brdf_explorer.measure.stability import (
 )
 from brdf_explorer.model import Param, declared
 from brdf_explorer.models import MODELS
-from brdf_explorer.state import Material, State, dumps, loads
+from brdf_explorer.state import Material, State, dumps, load, loads
 from brdf_explorer.views.drawing import Drawing
 from brdf_explorer.views.stability import Stability, directions_of, shown_at, tip
 
@@ -315,3 +319,78 @@ def test_broken_promise_is_told(gpu, monkeypatch):
     monkeypatch.setattr(measured, "LIMIT", 1e-9)
     cell = worst(gpu, "D ggx", "ordinary", "stable", (64, 0))
     assert cell.verdict == "error" and not cell.kept
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("rows", ["material", "all"])
+@pytest.mark.parametrize(
+    ("size", "scale"), [((900, 700), 1.0), ((600, 500), 1.0), ((1200, 1000), 2.0), ((502, 730), 1.0)]
+)
+def test_labels_lie_inside_and_apart(gpu, size, scale, theme, rows):
+    state = State(look=replace(State().look, theme=theme))
+    *_, found = stability(gpu, state.model, efforts=((64, 0),), everything=rows == "all")
+    boxes = []
+    for label in Stability(rows=rows).drawing(found, state, size, scale)[0].labels:
+        width = font(label.size * scale).getlength(label.text)
+        x, y, half = label.x - label.anchor[0] * width, label.y, 0.36 * label.size * scale
+        boxes.append((x, y - half, x + width, y + half, label.text))
+    for box in boxes:
+        assert box[0] >= 0 and box[1] >= 0 and box[2] <= size[0] and box[3] <= size[1], box
+    for a, b in combinations(boxes, 2):
+        assert a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1], (a, b)
+
+
+# --- the command -----------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def run(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(measured, "EFFORTS", ((64, 0),))
+    monkeypatch.setattr(measured.stability, "__defaults__", (((64, 0),), False))
+
+    def run(*args, status=0):
+        done = CliRunner().invoke(main, ["stability", *args], standalone_mode=False)
+        assert done.exception is None or status == 2, done.exception
+        assert status == 2 or (done.return_value or 0) == status, done.output
+        return done.output if status != 2 else str(done.exception)
+
+    return run
+
+
+def test_command_prints_and_writes(run):
+    assert "as printed" in run("gold") and "sample_f microfacet" in run("gold")
+    tree = json.loads(run("chalk", "--json"))
+    assert tree["broken"] == [] and {c["form"] for c in tree["cells"]} <= set(FORMS)
+    assert all(c["at"]["arguments"] for c in tree["cells"]) and len(tree["columns"]) == len(REGIMES)
+    run("chalk", "-o", "map.json")
+    assert json.loads(Path("map.json").read_text()) == tree
+    run("chalk", "-o", "map.svg", "--size", "300x300")
+    assert load("map.svg").model == load("chalk").model
+
+
+def test_command_writes_a_worst_point_as_a_preset(run):
+    out = run("gold", "--worst", "D", "alpha_0", "-o", "worst.toml")
+    assert "D ggx alpha_0, error" in out
+    state = load("worst.toml")
+    assert min(state.model.alpha) < 2e-3 and state.views["sphere"].formulas == "textbook"
+    run("gold", "--worst", "D", "alpha_0", "--ours", "-o", "worst.toml")
+    assert load("worst.toml").views["sphere"].formulas == "stable"
+
+
+def test_command_says_what_is_wrong(run):
+    assert "no such row" in run("gold", "--worst", "E", "alpha_0", "-o", "x.toml", status=2)
+    assert "no such column" in run("gold", "--worst", "D", "alpha", "-o", "x.toml", status=2)
+    assert "no argument" in run("gold", "--worst", "D", "eta_1", "-o", "x.toml", status=2)
+    assert "-o FILE.toml" in run("gold", "--worst", "D", "alpha_0", status=2)
+
+
+def test_command_fails_where_ours_breaks_its_promise(run, monkeypatch):
+    monkeypatch.setattr(measured, "LIMIT", 1e-9)
+    monkeypatch.setattr(measured, "_kept", {})
+    run("chalk", status=1)
+
+
+def test_picture_in_the_readme(gpu, picture_regression):
+    found = render(gpu, load("gold"), "stability", (760, 520))
+    picture_regression.check(labelled(found), "stability", exact="llvmpipe" in gpu.device)

@@ -49,9 +49,9 @@ WORDS = {  # what stands in a cell, and what it means
 }
 FORM_WORDS = {"stable": "as rearranged", "textbook": "as printed"}
 HEAD, SIDE, LETTER = 58, 10, 5.2  # points above the cells and beside them, and of a small letter
-LABELS, NARROW = 104, 82  # points of the column of names
+LABELS, NARROW, LEAST_LABELS = 104, 82, 72  # points of the column of names, by the width
 ROW, MOST = 25, 58  # points of a row, at least and at most
-LEAST = 30  # points of a column whose cells have letters; narrower ones have their colours and tooltips
+LEAST = 26  # points of a column whose cells have letters; narrower ones have their colours and tooltips
 
 
 @dataclass(frozen=True)
@@ -80,12 +80,12 @@ class Stability(Drawn):
         draw = Drawing(size, scale, state.look.theme)
         width, height = size[0] / scale, size[1] / scale
         columns = [c for c in REGIMES if any((r, c, FORMS[0]) in found.cells for r in found.rows) or found.progress < 1]
-        labels = LABELS if width > 760 else NARROW
+        labels = LABELS if width > 760 else NARROW if width > 560 else LEAST_LABELS
         across = max((width - labels - SIDE) / max(len(columns), 1), 1.0)
         told = across >= LEAST
         entries = legend(state.look.theme)
         lines = flow([len(words) for _, _, words in entries], width - 2 * SIDE)
-        foot = 30 + 17 * (lines[-1][0] + 1)
+        foot = 36 + 17 * (lines[-1][0] + 1)
         room = max(height - HEAD - foot, ROW)
         count = max(min(int(room / ROW), len(found.rows)), 1)
         first = min(self.first, len(found.rows) - count)
@@ -98,9 +98,9 @@ class Stability(Drawn):
         def words(text, x, y, color="ink", anchor=(0.5, 0.5), points=11.0):
             draw.text(text, (x * scale, y * scale), color, anchor, points)
 
-        words("upper: " + FORM_WORDS["stable"], SIDE, height - 15, anchor=(0, 0.5), points=10.5)
-        words("lower: " + FORM_WORDS["textbook"], SIDE, height - 28, anchor=(0, 0.5), points=10.5)
-        small = 10.0 if across > 41 else 8.8
+        words("upper: " + FORM_WORDS["stable"], SIDE, height - 11, anchor=(0, 0.5), points=10.5)
+        words("lower: " + FORM_WORDS["textbook"], SIDE, height - 23, anchor=(0, 0.5), points=10.5)
+        small = 10.0 if across > 41 else 8.8 if across > 32 else 7.8
         for i, name in enumerate(columns if told else ()):
             x = labels + (i + 0.5) * across
             for line, text in enumerate(REGIMES[name].head):
@@ -130,7 +130,7 @@ class Stability(Drawn):
             for start, end in diagonals(area, 7 * scale):
                 draw.stroke([start, end], COLORS[state.look.theme]["hatch"], 0.8)
         for text, middle, color in texts if told else ():
-            draw.text(text, middle, color, size=10.0 if across > 41 else 9.0)
+            draw.text(text, middle, color, size=min(small + 0.2, 10.0))
         for (line, x), (text, color, meaning) in zip(lines, entries, strict=True):
             y = foot - 14 - 17 * line
             area = box(SIDE + x, y - 6.5, SIDE + x + 32, y + 6.5)
@@ -186,7 +186,7 @@ def summary(cell, wide=True):
     if cell.verdict == "fine":
         return short(cell.error)
     if cell.verdict == "error":
-        return f"{100 * cell.error:.0f} %" if 0.01 <= cell.error < 9.995 else short(cell.error)
+        return f"{100 * cell.error:.0f}{' ' * wide}%" if 0.01 <= cell.error < 9.995 else short(cell.error)
     if cell.verdict == "ill":
         return f"κ {short(cell.hard.condition)}" if wide else f"κ{short(cell.hard.condition)}"
     text = WORDS[cell.verdict][0]
@@ -227,7 +227,7 @@ def tip(cell, found, state):
     if cell.hard:
         lines.append(f"where not, {figure(cell.hard.error)} at condition {figure(cell.hard.condition)}")
     if cell.gain > 1e-6:
-        lines.append(f"gains {figure(cell.gain)} of the energy")
+        lines.append(f"gains energy: an albedo is too large by {figure(cell.gain)}, relative")
     if cell.reciprocity > 1e-6:
         lines.append(f"exchanging light and viewer changes it by {figure(cell.reciprocity)}")
     if cell.over or cell.under:
@@ -259,9 +259,10 @@ def shown_at(state, cell):
     def within(name, value, declaration):
         values = value if isinstance(value, list) else [value]
         kept = [min(max(v, declaration.low), declaration.high) for v in values]
-        if kept != values:
-            unit = "°" if declaration.unit == "deg" else ""
-            beyond.append(f"{name} {min(values):.3g}{unit} cannot be shown: it is {kept[0]:.4g}{unit} after a click")
+        unit = "°" if declaration.unit == "deg" else ""
+        for there, here in zip(values, kept, strict=True):
+            if there != here:
+                beyond.append(f"{name} {there:.3g}{unit} cannot be shown: after a click it is {here:.4g}{unit}")
         return tuple(kept) if len(kept) > 1 else kept[0]
 
     params = declared(state.model, Param)

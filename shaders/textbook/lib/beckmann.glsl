@@ -1,4 +1,5 @@
 // Smith's Lambda of Gaussian slopes as the lecture prints it: (erf(a) - 1) / 2 + exp(-a^2) / (2 a sqrt(pi)).
+// In float32 it cancels for a in (2, 6): negative there, for want of digits of erf(a) - 1.
 #include "textbook/stretch.glsl"
 
 // Abramowitz and Stegun, 7.1.26, as most renderers have it: absolute error 1.5e-7.

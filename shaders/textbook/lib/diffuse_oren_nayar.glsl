@@ -1,4 +1,5 @@
 // Slot diffuse: Oren and Nayar 1994, the qualitative model as printed, in angles.
+// In float32 errors of 5e-4, by the acos of Mesa, and factors below 0 where both directions graze.
 #include "lib/common.glsl"
 
 vec3 diffuse_f(vec3 wo, vec3 wi, vec3 albedo, float sigma, float r) {

@@ -1,4 +1,5 @@
 // Slot ndf: Beckmann as the lecture prints it: exp(-tan^2 / alpha^2) / (pi alpha^2 cos^4), tan^2 = (1 - cos^2) / cos^2.
+// In float32 tan^2 is a multiple of 1.2e-7: errors of 7e-5 at alpha = 0.05, and a factor of 9e6 at 1e-6.
 #include "lib/beckmann.glsl"
 #include "lib/common.glsl"
 

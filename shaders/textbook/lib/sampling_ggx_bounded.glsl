@@ -1,4 +1,5 @@
 // Slot sampling: a bounded cap of visible normals as printed, Eto and Tokuyoshi 2023, Listing 1.
+// In float32 1 - z^2 cancels where the cap is small.
 #include "lib/common.glsl"
 #include "lib/ndf_ggx.glsl"
 

@@ -1,4 +1,5 @@
 // Slot sampling: visible normals as printed, Dupuy and Benyoub 2023, Listing 3.
+// In float32 c + v cancels where facets are seen from the side: a reflected direction may be off by its whole length, 2.
 #include "lib/common.glsl"
 #include "lib/ndf_ggx.glsl"
 

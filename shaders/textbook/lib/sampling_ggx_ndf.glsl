@@ -1,5 +1,6 @@
 // Slot sampling: normals by D cos theta_m as printed, Walter et al. 2007, Eqs. 35 and 36: theta = atan(alpha sqrt(u / (1 - u))),
 // for alpha = 1, then stretched.
+// In float32 errors of 2e-5, by the atan of Mesa.
 #include "lib/common.glsl"
 #include "textbook/facet.glsl"
 

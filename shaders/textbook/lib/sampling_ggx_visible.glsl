@@ -1,4 +1,5 @@
 // Slot sampling: visible normals as printed, Heitz 2018, "Sampling the GGX Distribution of Visible Normals", Listing 1.
+// In float32 errors of 3e-5, and of more next to the rim of the disc.
 #include "lib/common.glsl"
 #include "lib/ndf_ggx.glsl"
 

@@ -1,4 +1,5 @@
 // Slot smith: Walter's rational fit of Beckmann's G1 as printed (Walter et al. 2007, Eq. 27), as Lambda = 1/G1 - 1.
+// The fit of G1 exceeds 1 for a in (1.548, 1.6), so Lambda is negative there.
 #include "textbook/stretch.glsl"
 
 float Lambda(vec3 w, vec2 alpha) {

@@ -1,4 +1,5 @@
 // Maps from the unit square to directions as printed, by Pythagoras.
+// In float32 1 - x^2 - y^2 cancels next to the horizon, and may be below 0: NaN.
 #include "lib/common.glsl"
 
 vec3 uniform_hemisphere(vec2 u) {

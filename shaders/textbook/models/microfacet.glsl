@@ -1,5 +1,6 @@
 // Torrance-Sparrow as the lecture prints it: f = D G F / (4 cos theta_i cos theta_o) and the weight f cos theta_i / pdf, with no
 // guard against a division by 0.
+// In float32 an albedo of 1 becomes 3000 at alpha = 1e-6: D fails, and nothing bounds it.
 #include "params.glsl"
 #include "lib/common.glsl"
 #include "lib/microfacet.glsl"
