@@ -11,12 +11,13 @@ from ..model import Invalid, choice, declared, param
 from .axes import Axes, Axis
 from .diagram import arrow, nice_step, number
 from .drawing import Drawing, Drawn
-from .picture import R2, Curves, rgb
+from .picture import PALETTES, R2, Curves, rgb
 
 KINDS = {"beckmann": "gaussian", "ggx": "ellipsoids"}
 NAMES = {"beckmann": "Beckmann", "ggx": "Trowbridge-Reitz"}
 COARSE, FINE = 65, 161  # heights along a side of the surface: of the first picture and of the others
 PASSES = 4  # jittered drawings whose mean has smooth edges
+TARGETS = {"surface": ("f1",), "once": ("f1", True), "mean": ("f2",)}  # of the passes: what shows, one, their mean
 SURFACES = 16  # that are measured: the lit area's standard error is then below 0.002
 ROOM = (560, 400)  # points from which a picture has room for two columns, and for two rows
 TALL = (400, 600)  # points from which a single column has room for all
@@ -138,14 +139,20 @@ class Microsurface(Drawn):
     def stages(self, gpu, ground, boxes, theme):
         """(Cut, its picture, Measured, done): few heights, then all of them, smooth edges, and one surface more each time."""
 
-        def relief(cut, passes):
-            return self.relief(gpu, boxes["surface"], cut, theme, passes) if "surface" in boxes else None
+        left, bottom, right, top = boxes.get("surface", (0, 0, 1, 1))
+        size = (max(round(right - left), 1), max(round(top - bottom), 1))
+        targets = [gpu.target(f"microsurface.{n}", size, 4, *of) for n, of in TARGETS.items()]
+
+        def relief(cut, i=0, count=1):
+            return self.relief(gpu, targets, boxes["surface"], cut, theme, i, count) if "surface" in boxes else None
 
         cut = ground.cut(self.extent, COARSE)
-        yield cut, relief(cut, 1), None, False
+        yield cut, relief(cut), None, False
         cut = ground.cut(self.extent, FINE)
-        yield cut, relief(cut, 1), None, False
-        target = relief(cut, PASSES)
+        target = relief(cut)
+        for i in range(PASSES if target else 0):
+            yield cut, target, None, False
+            relief(cut, i, PASSES)
         most = SURFACES if {"slopes", "visibility"} & set(boxes) else 0
         yield cut, target, None, most == 0
         for count in range(1, most + 1):
@@ -196,31 +203,29 @@ class Microsurface(Drawn):
         unit = max(min(0.92 * width / (2 * reach), 0.8 * height / (high - low)), 1e-3)
         return right, up, eye, np.array([width / 2, 0.44 * height - unit * (low + high) / 2]), unit
 
-    def relief(self, gpu, box, cut, theme, passes):
-        """The surface in a target as large as the box, the mean of jittered passes."""
+    def relief(self, gpu, targets, box, cut, theme, i, count):
+        """Draw jittered pass i of `count` of the surface; the first of the targets, which has their mean from the last on."""
         colors = dict(zip(("body", "shadowed", "masked", "both"), SKIN[theme], strict=True))
-        size = tuple(max(round(box[i + 2] - box[i]), 1) for i in (0, 1))
-        target = gpu.target("microsurface.surface", size, 4, "f1")
-        once = gpu.target("microsurface.once", size, 4, "f1", depth=True)
+        target, once, mean = targets
         program = gpu.program(assemble("views/microsurface.frag"), assemble("views/microsurface.vert"))
         over = gpu.program(assemble("views/over.frag"))
         field = gpu.texture(np.stack([cut.heights, corners(cut.lit), corners(cut.seen)], axis=-1))
         right, up, eye, center, unit = self.camera(box, cut)
-        half = np.array(size) / 2
+        half = np.array(target.size) / 2
         uniforms = {"right": tuple(right), "up": tuple(up), "eye": tuple(eye), "unit": tuple(unit / half)}
         uniforms |= {"pitch": cut.pitch, "foot": cut.foot, "depth": 0.5 / self.extent}
         uniforms |= {name: rgb(color) for name, color in colors.items()} | {"side": rgb(WALL[theme])}
         uniforms |= {"light": (np.sin(cut.ground.theta_i), 0.0, np.cos(cut.ground.theta_i))}
-        paper = rgb(Drawing(size, 1.0, theme).color("paper"))
-        mean = gpu.target("microsurface.mean", size, 4, "f2")
-        mean.clear()
-        for n in range(passes):
-            jitter = (R2 * n + 0.5) % 1.0 - 0.5 if passes > 1 else np.zeros(2)
-            once.clear(*paper, 1.0)
-            uniforms |= {"center": tuple((center + jitter) / half - 1)}
-            gpu.draw(program, once, uniforms, {"field": field}, index=block(gpu, len(cut.heights)), depth=True)
-            gpu.draw(over, mean, {"share": 1 / passes}, {"picture": once.color_attachments[0]}, blend="add")
-        gpu.draw(over, target, {"share": 1.0}, {"picture": mean.color_attachments[0]})
+        paper = rgb(PALETTES[theme]["paper"])
+        if i == 0:
+            mean.clear()
+        jitter = (R2 * i + 0.5) % 1.0 - 0.5 if count > 1 else np.zeros(2)
+        once.clear(*paper, 1.0)
+        uniforms |= {"center": tuple((center + jitter) / half - 1)}
+        gpu.draw(program, once, uniforms, {"field": field}, index=block(gpu, len(cut.heights)), depth=True)
+        gpu.draw(over, mean, {"share": 1 / count}, {"picture": once.color_attachments[0]}, blend="add")
+        if i == count - 1:
+            gpu.draw(over, target, {"share": 1.0}, {"picture": mean.color_attachments[0]})
         return target
 
     def draw_surface(self, draw, box, cut, target):
