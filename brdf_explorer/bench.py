@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,8 @@ import numpy as np
 from .glsl import assemble, of_model
 from .gpu import offscreen
 from .measure.cost import interleaved
+from .measure.estimator import Runs, moments, samplers, slope
+from .measure.grid import direction
 from .state import State
 
 SIZE = (1024, 1024)
@@ -69,6 +72,7 @@ def report(repeats=31, processes=5):
     """Figures, as they are measured: of drawing, then of starting."""
     with offscreen() as gpu:
         yield from drawing(gpu, repeats)
+    yield from sampling(State().model)
     yield from starting(processes)
 
 
@@ -112,6 +116,21 @@ def drawing(gpu, repeats):
     yield figure("lobe 676x210", times["lobe"] * 1e3, "ms")
     yield figure("lobe 676x210 / fill", times["lobe"] / times["fill"], limit=4)
     yield figure("polar slice 676x210", times["polar"] * 1e3, "ms")
+
+
+def sampling(model, theta_o=60.0, samples=4096, groups=8):
+    """How the error of the estimator falls with the number of samples: slopes of log error to log N, of groups of runs."""
+    wo = direction(np.radians(theta_o), 0.0)
+    models, own = samplers(model)
+    known = [m for m in moments([models[own]], wo) if m][-1]
+    slopes = []
+    for seed in range(groups):
+        runs = Runs(models[own], wo, seed=seed)
+        while not runs.counts or runs.counts[-1] < samples:
+            deque(runs.double(), 0)
+        slopes.append(slope(runs.counts, runs.estimates, known.mean).value)
+    name = f"slope of the error of {own} samples over N, log to log, where 1/sqrt(N) has -0.5"
+    yield figure(name, slopes, limit=-0.45)
 
 
 def starting(processes):

@@ -17,6 +17,7 @@ SHARP = Material("Sharp", MODELS["microfacet"](alpha=0.001))
 NARROW = Material(
     "Narrow", MODELS["microfacet"](alpha=0.03)
 )  # thinner ones cover a sample of a pixel or not by a rounding
+ROUGH = Material("Rough", MODELS["microfacet"](alpha=0.5, ndf="beckmann", sampling="visible"))
 BRUSHED = State((load("brushed_aluminium").material,))
 
 
@@ -57,6 +58,17 @@ SCREENS = {
         ),
     ),
     "hemisphere-sharp": ("hemisphere", at(State((SHARP,)), theta_o=60.0).with_view("hemisphere", quantity="f")),
+    "sampling-light": ("sampling", state("gold").with_view("sampling", show="error", samples=256)),
+    "sampling-facets": (
+        "sampling",
+        at(State((ROUGH,)), theta_o=75.0).with_view("sampling", show="facets", samples=64),
+    ),
+    "sampling-weights": (
+        "sampling",
+        at(replace(state("gold", "studio", theme="dark"), materials=(ROUGH,)), theta_o=75.0).with_view(
+            "sampling", show="weights", samples=64
+        ),
+    ),
     "polar-light": ("polar", state("gold").with_view("polar", curves="rgb")),
     "polar-dark-log": (
         "polar",

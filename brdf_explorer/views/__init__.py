@@ -6,7 +6,8 @@ from .hemisphere import Hemisphere
 from .lobe import Lobe
 from .microsurface import Microsurface
 from .polar import Polar
+from .sampling import Sampling
 from .sphere import Sphere
 from .stability import Stability
 
-VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Compare, Stability, Microsurface)}
+VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Sampling, Compare, Stability, Microsurface)}
