@@ -20,11 +20,12 @@ from brdf_explorer.measure.estimator import (
     rms_error,
     samplers,
     slope,
+    surroundings,
 )
 from brdf_explorer.measure.grid import direction
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Directions, Light, Look, State
-from brdf_explorer.views.sampling import FACETS, PANELS, expected, profile, surroundings
+from brdf_explorer.views.sampling import FACETS, PANELS, expected, profile
 
 MICROFACET, DIFFUSE = MODELS["microfacet"], MODELS["diffuse"]
 WO = direction(np.radians(55.0), np.radians(25.0))

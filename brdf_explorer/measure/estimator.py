@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..environment import Environment
-from ..lib.common import HORIZON, quotient
+from ..environment import Environment, environment, turn
+from ..lib.common import HORIZON, normalize, quotient
 from ..lib.environment import environment_radiance, pdf_environment, sample_environment
 from ..lib.random import random2
 from ..lib.srgb import luminance
@@ -48,6 +48,24 @@ class Surroundings:
     def sample(self, u):
         """Directions (..., 3) in proportion to the radiance, from u (..., 2)."""
         return sample_environment(self.environment.map, self.environment.cdf, u)[0] @ self.frame
+
+
+def surroundings(light, wo):
+    """The Surroundings, in a State's Light, of the place on the sphere that the eye sees along wo in the place's frame.
+
+    The frame is that of views/sphere.frag; None without environment.
+    """
+    if light.environment == "none" or light.gain <= 0:
+        return None
+    x, y, z = wo
+    # the eye in the frame of a normal n is (-n.x / q, -n.y n.z / q, n.z) with q^2 = n.x^2 + n.z^2
+    across = np.sqrt((1 - x) * (1 + x))
+    normal = np.array([-x * z / across, -y / across, z])
+    tangent = normalize(np.array([normal[2], 0.0, -normal[0]]))
+    frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=-1)
+    return Surroundings(
+        environment(light.environment, light.file), np.reshape(turn(light), (3, 3)).T @ frame, light.gain
+    )
 
 
 class Moments(NamedTuple):

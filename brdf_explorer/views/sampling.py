@@ -5,12 +5,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..environment import environment
 from ..lib import slot
 from ..lib.common import normalize
 from ..measure.albedo import quadrature
 from ..measure.cost import costs, fill, sample, summary
-from ..measure.estimator import FIRST, RUNS, Runs, Surroundings, moments, rms_error, samplers, slope
+from ..measure.estimator import FIRST, RUNS, Runs, Surroundings, moments, rms_error, samplers, slope, surroundings
 from ..measure.grid import angles, direction
 from ..measure.microsurface import D_visible
 from ..measure.sampling import chi_square
@@ -19,7 +18,6 @@ from .axes import TICK, Axes, Axis
 from .diagram import arrow, number
 from .drawing import Drawing, Drawn
 from .picture import Curves, rgb
-from .sphere import turn
 
 PANELS = {  # in the order of their importance where there is little room, with their titles
     "error": "relative error of the estimate",
@@ -29,13 +27,14 @@ PANELS = {  # in the order of their importance where there is little room, with 
     "facets": "facets that ωo sees",
     "time": "relative error by time",
 }
-MEANINGS = (  # of the columns of the table
-    "variance of f L cos / pdf, by quadrature",
-    "ns: time to draw a direction, by the shader",
-    "var. × ns: time for a given error; the least is best",
-    "slope of log error to log N; by theory −½",
-    "lost: directions below the horizon, of weight 0",
-)
+MEANINGS = {  # of the columns of the table
+    "variance": "variance of f L cos / pdf, by quadrature",
+    "ns": "ns: time to draw a direction, by the shader",
+    "product": "var. × ns: time for a given error; the least is best",
+    "slope": "slope of log error to log N; by theory −½",
+    "lost": "lost: directions below the horizon, of weight 0",
+    "largest": "largest: weight f cos / pdf",
+}
 CELL = (260, 155)  # points that a panel takes at least
 STEP = 0.02  # seconds of work between two pictures
 TESTED = 20_000  # directions of the chi-square test
@@ -180,22 +179,6 @@ def note(found):
     return f"{n} samples in each of {RUNS} runs"
 
 
-def surroundings(light, wo):
-    """The Surroundings of the place on the sphere that is seen from the direction wo in its frame; None without environment."""
-    if light.environment == "none" or light.gain <= 0:
-        return None
-    x, y, _ = wo
-    q = np.sqrt(
-        (1 - x) * (1 + x)
-    )  # of the sphere's frame: wo = (-n.x / q', -n.y n.z / q', n.z), q' = sqrt(n.x^2 + n.z^2)
-    normal = np.array([-x * wo[2] / q, -y / q, wo[2]])
-    tangent = normalize(np.array([normal[2], 0.0, -normal[0]]))
-    frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=-1)
-    return Surroundings(
-        environment(light.environment, light.file), np.reshape(turn(light), (3, 3)).T @ frame, light.gain
-    )
-
-
 @np.errstate(under="ignore")
 def expected(model, wo):
     """Polar angles (n,) of directions that follow the lobe, and the probability by pdf that each stands for."""
@@ -331,7 +314,7 @@ def draw_variance(draw, box, state, found, colors):
     for i, (name, color) in enumerate(colors.items()):
         draw.text(name, (left + 12 * s, top - 32 * s - (i + 1) * step), color, (0.0, 0.5), 12.0)
     foot = top - 40 * s - (len(rows) + 1) * step
-    for words in MEANINGS:
+    for words in (MEANINGS[column] for column, _ in columns):
         if foot - 8 * s > box[1] and right - left > 330 * s:
             draw.text(words, (left + 12 * s, foot), "muted", (0.0, 0.5), TICK)
             foot -= 16 * s
