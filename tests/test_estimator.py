@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fontTools.ttLib import TTFont
 from test_views import check_labels, last
 
 from brdf_explorer.environment import environment
-from brdf_explorer.export import save_view
+from brdf_explorer.export import font_path, save_view
 from brdf_explorer.lib.srgb import luminance
 from brdf_explorer.measure.albedo import albedo, integral
 from brdf_explorer.measure.estimator import (
@@ -228,7 +229,7 @@ def test_table_holds_errors_over_samples(gpu, tmp_path):
 @pytest.mark.parametrize("environment", ["none", "studio"])
 def test_panels_have_room_for_their_labels(gpu, environment):
     state = State(directions=Directions(60.0), light=Light(environment=environment)).with_view("sampling", samples=256)
-    found = measured(gpu, state)
+    found, glyphs = measured(gpu, state), set(TTFont(font_path()).getBestCmap())
     for cost in ({}, {name: np.full(9, 3e-9) for name in found.models}):
         found.costs = cost
         for show in ("all", *PANELS):
@@ -243,6 +244,7 @@ def test_panels_have_room_for_their_labels(gpu, environment):
                 drawing = view.drawing(state, found, size, scale)
                 check_labels(drawing, size, scale)
                 words = " ".join(label.text for label in drawing.labels)
+                assert {ord(c) for c in words} <= glyphs, words
                 if show != "all":
                     assert PANELS[show] in words
                 elif size[0] > 2000:

@@ -10,4 +10,6 @@ from .sampling import Sampling
 from .sphere import Sphere
 from .stability import Stability
 
-VIEWS = {view.name(): view for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Sampling, Compare, Stability, Microsurface)}
+VIEWS = {
+    view.name(): view for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Sampling, Compare, Stability, Microsurface)
+}
