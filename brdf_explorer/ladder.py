@@ -76,6 +76,10 @@ def absorbs(state):
     return "k is not 0" if max(state.model.k) > 0 else ""
 
 
+def not_of_ggx(state):
+    return "visible normals of Beckmann have no caps: the same as visible" if state.model.ndf != "ggx" else ""
+
+
 LADDERS = {
     ladder.name: ladder
     for ladder in (
@@ -99,6 +103,14 @@ LADDERS = {
             ("schlick", "dielectric", "conductor"),
             applies=lambda model: model.fresnel != "one",
             outside={"dielectric": absorbs},
+        ),
+        of_choice("diffuse", "Does the roughness of a diffuse surface show?", "f", ("lambert", "oren_nayar")),
+        of_choice(
+            "sampling",
+            "How are directions drawn?",
+            "samples",
+            ("uniform", "cosine", "ndf", "visible", "caps", "bounded"),
+            outside={"caps": not_of_ggx, "bounded": not_of_ggx},
         ),
     )
 }

@@ -19,6 +19,8 @@ LEAST, MOST = 15, 101
 """Repeats: no fewer and no more."""
 STEADY = 0.02
 """Standard error of the median, over the median, at which repeating ends."""
+PATIENCE = 4.0
+"""Seconds after which it ends as well."""
 PAIRS = 2048
 """Evaluations of a timed call of numpy."""
 
@@ -68,15 +70,17 @@ def interleaved(runs, repeats):
     return {name: np.array(t) for name, t in times.items()}
 
 
-def costs(gpu, works, least=LEAST, most=MOST):
+def costs(gpu, works, least=None, most=None):
     """Yield {name: seconds a unit (n,)} of named Works after each run, n repeats so far; {} until there is one of all.
 
-    It ends when all medians are steady or after `most` repeats. What was measured is kept with the Gpu, and given at once when
-    the same works are asked for: methods are compared within one measurement, never across two.
+    It ends when all medians are steady, after `most` repeats (MOST) or after PATIENCE, but not before `least` (LEAST). What was
+    measured is kept with the Gpu, and given at once when the same works are asked for: methods are compared within one
+    measurement, never across two.
     """
+    least, most = least or LEAST, most or MOST
     keys = {}
     for name, work in works.items():
-        keys[name] = (work.key or drawn_by(gpu, work.run), work.count)
+        keys[name] = work.key or drawn_by(gpu, work.run)
         yield {}
     same = {key: works[name] for name, key in keys.items()}  # methods whose shaders are one are timed once
     group = frozenset(same)
@@ -86,19 +90,19 @@ def costs(gpu, works, least=LEAST, most=MOST):
         for run in runs.values():
             run()
             yield {}
-        found = {}
+        found, done, start = {}, 0, time.perf_counter()
         for times in rounds(runs):
             n = min(map(len, times.values()))
-            if n > (len(next(iter(found.values()))) if found else 0):
-                found = {
-                    key: (np.array(times[key][:n]) - (np.array(times[id(w.bare)][:n]) if w.bare else 0.0)) / w.count
-                    for key, w in same.items()
-                }
-                if n >= most or (n >= least and all(steady(samples) for samples in found.values())):
+            if n > done:
+                bared = {key: times[id(w.bare)][:n] if w.bare else 0.0 for key, w in same.items()}
+                found = {key: np.array(times[key][:n]) - bared[key] for key in same}
+                done = n
+                late = time.perf_counter() - start > PATIENCE
+                if n >= most or (n >= least and (late or all(map(steady, found.values())))):
                     break
-            yield {name: found[key] for name, key in keys.items()} if found else {}
+            yield {name: found[key] / works[name].count for name, key in keys.items()} if found else {}
         gpu.costs[group] = found
-    yield {name: gpu.costs[group][key] for name, key in keys.items()}
+    yield {name: gpu.costs[group][key] / works[name].count for name, key in keys.items()}
 
 
 def drawn_by(gpu, run):
@@ -145,16 +149,17 @@ def evaluation(gpu, model, bare, size=SIZE, dtype="f4"):
 
 
 def sample(gpu, model, bare, size=SIZE):
-    """The Work of drawing one direction by the shader, with its weight, less the `fill`."""
+    """The Work of drawing one direction by the shader, with its weight, less the `fill` of the same size."""
     uniforms = {"material": model, "size": tuple(map(float, size))}
     return Work(drawing(gpu, of_model("views/sample.frag", model), uniforms, size, "f4"), size[0] * size[1], bare)
 
 
 def one_pass(gpu, state, size):
     """The Work of the sphere's first pass in a picture of that size."""
+    own = gpu.apart()
 
     def run():
-        next(state.views["sphere"].pictures(gpu, state, size))
+        next(state.views["sphere"].pictures(own, state, size))
         gpu.ctx.finish()
 
     return Work(run)

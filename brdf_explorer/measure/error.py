@@ -48,6 +48,24 @@ class Values:
     weight: np.ndarray
 
 
+def spread(model, alpha, n=RAYS):
+    """Standard deviation of one sample's weight over its mean: sqrt(E[w^2] / E[w]^2 - 1), over colours and viewers.
+
+    E[w^2] is the integral of (f cos)^2 / pdf; squares are averaged over viewers. n samples have a standard error of this over
+    sqrt(n), so a method's time for an error goes as its cost times the square.
+    """
+    squares = []
+    for wo in viewers():
+        g, weight = quadrature(wo, alpha, n)
+        with np.errstate(under="ignore"):
+            f = model.f(wo, g.wi) * g.wi[..., 2:]
+            pdf = model.pdf(wo, g.wi)[..., None]
+            mean = np.einsum("ptc,pt->c", f, weight)
+            second = np.einsum("ptc,pt->c", f * quotient(f, pdf), weight)
+        squares.append(second.sum() / np.sum(mean**2) - 1)
+    return float(np.sqrt(max(np.mean(squares), 0.0)))
+
+
 def values(evaluator, alpha, n=RAYS, wo=None):
     """The Values of an evaluator, which has f(wo, wi), for slopes of scale alpha (2,); methods are compared at one alpha.
 
@@ -172,7 +190,10 @@ def itp(picture, reference):
 
 @dataclass(frozen=True)
 class Metric:
-    """A measure of error. compares: "values" or "pictures"; function(found, reference) of two of these -> float."""
+    """A measure of error.
+
+    compares "values" or "pictures": function(found, reference) of two of these -> float; "samples": function(model, alpha, n).
+    """
 
     title: str
     compares: str
@@ -185,12 +206,13 @@ METRICS = {
     "maximum": Metric("largest relative error of f", "values", largest),
     "energy": Metric("largest error of albedo", "values", energy),
     "reciprocity": Metric("largest error of reciprocity", "values", reciprocity),
+    "spread": Metric("relative standard error of one sample", "samples", spread),
     "picture": Metric("relative RMSE of the sphere", "pictures", picture_rmse),
     "brightness": Metric("relative error of the sphere's mean", "pictures", picture_energy),
     "flip": Metric("HDR-FLIP of the sphere", "pictures", flip),
     "itp": Metric("ΔE ITP of the sphere", "pictures", itp),
 }
-"""The metrics by name, those of values first."""
+"""The metrics by name: of values, of samples, of pictures."""
 
 
 def between(metric, evaluator, reference, alpha, n=RAYS):
