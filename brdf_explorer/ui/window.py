@@ -436,6 +436,7 @@ class Window:
     def reload(self):
         """Draw all pictures anew, from the shaders as they are on disk now."""
         glsl.reload()
+        self.gpu.errors.clear()  # of pictures that other shaders drew
         for canvas in self.canvases.values():
             canvas.restart()
 

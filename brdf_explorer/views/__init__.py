@@ -1,5 +1,6 @@
 """The views, one module each. `VIEWS` lists them by name."""
 
+from .chart import Chart
 from .compare import Compare
 from .factors import Factors
 from .hemisphere import Hemisphere
@@ -11,5 +12,6 @@ from .sphere import Sphere
 from .stability import Stability
 
 VIEWS = {
-    view.name(): view for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Sampling, Compare, Stability, Microsurface)
+    view.name(): view
+    for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Sampling, Compare, Chart, Stability, Microsurface)
 }

@@ -35,6 +35,9 @@ class Axis:
             step = nice_step((self.high - self.low) / count)
             return step * np.arange(np.ceil(self.low / step - 1e-9), np.floor(self.high / step + 1e-9) + 1)
         low, high = np.log10([self.low, self.high])
+        if 3 * (high - low) <= count:  # 1, 2 and 5 of each decade
+            found = np.outer(10.0 ** np.arange(np.floor(low), np.ceil(high) + 1), [1, 2, 5]).ravel()
+            return found[(found >= self.low * (1 - 1e-9)) & (found <= self.high * (1 + 1e-9))]
         step = max(int(np.ceil((high - low) / count)), 1)
         return 10.0 ** np.arange(np.ceil(low - 1e-9), np.floor(high + 1e-9) + 1, step)
 
@@ -51,12 +54,12 @@ class Axes:
         x, y = np.broadcast_arrays(self.x.share(x), self.y.share(y))
         return np.stack([left + x * (right - left), bottom + y * (top - bottom)], axis=-1)
 
-    def frame(self, xs=None, words=None):
-        """Draw the frame with grid, ticks and titles. xs: ticks of x other than even ones, and the words at them."""
+    def frame(self, xs=None, words=None, ys=None):
+        """Draw the frame with grid, ticks and titles. xs, ys: ticks other than even ones, and the words at those of x."""
         draw, s = self.drawing, self.drawing.scale
         left, bottom, right, top = self.box
         xs = self.x.ticks(right - left, 62 * s) if xs is None else xs
-        ys = self.y.ticks(top - bottom, 34 * s)
+        ys = self.y.ticks(top - bottom, 34 * s) if ys is None else ys
         for x in xs:
             draw.stroke(self.place(x, [self.y.low, self.y.high]), "grid")
         for y in ys:

@@ -1,7 +1,7 @@
 """A diagram as data: fills, lines, pictures and texts in order, which a window draws and a vector file holds."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 import numpy as np
@@ -117,9 +117,15 @@ class Drawn(View):
     """A view whose pictures are drawings, which a vector file can hold."""
 
     def drawings(self, gpu, state, size, scale=1.0) -> Iterator[tuple[Drawing, str, bool]]:
-        """Drawings of the state, from the first to the best, each with its note and whether it is the last."""
+        """Drawings of the state, from the first to the best, each with its note and whether it is the last.
+
+        The same Drawing again is not drawn again.
+        """
         raise NotImplementedError
 
     def pictures(self, gpu, state, size, scale=1.0):
+        drawn = None
         for drawing, note, done in self.drawings(gpu, state, size, scale):
-            yield drawing.picture(gpu, self.name(), note, done)
+            if drawing is not drawn:
+                drawn, picture = drawing, drawing.picture(gpu, self.name(), note, done)
+            yield replace(picture, note=note, done=done)
