@@ -435,6 +435,100 @@ def table(state, preset, rays, nodes, output):
 
 
 @main.command()
+@click.argument("ladder", required=False)
+@click.option("--preset", default="gold", show_default=True, metavar="PRESET", help="The material.")
+@click.option("--scene", default="studio", show_default=True, metavar="PRESET", help="The light and the look.")
+@click.option("--error", metavar="METRIC", help="Measure of error; without it the one that suits the question.")
+@click.option("--cost", metavar="KIND", help="evaluation, of f, or frame, a pass of the sphere.")
+@click.option("--tolerance", type=Number(1e-9, 10), help="The error that is small enough; 0.01 without it.")
+@click.option("--size", type=Size(), help="Pixels of the picture.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@click.option("-o", "--output", metavar="FILE", help="A .svg, .pdf or .png of the chart, or a .json, to write as well.")
+def chart(ladder, preset, scene, error, cost, tolerance, size, as_json, output):
+    """Compare methods by speed and accuracy.
+
+    LADDER is the question that they answer; without it all questions that arise for the preset.
+    """
+    import json
+
+    from .export import DRAWINGS, known_suffix, save_view, write_png
+    from .gpu import offscreen
+    from .measure.tradeoff import report
+    from .state import dumps
+
+    options = {"ladder": ladder or "all", "error": error, "cost": cost, "tolerance": tolerance}
+    state = loaded(preset, scene).with_view("chart", **{name: v for name, v in options.items() if v is not None})
+    view = state.views["chart"]
+    if output:
+        suffix = known_suffix(output, {".json": None, ".png": write_png, **DRAWINGS}, "a chart")
+    with offscreen() as gpu, progress() as show:
+        for found, _ in view.measured(gpu, state):
+            if found:
+                show(f"{found[-1].ladder.name}: {found[-1].doing or 'done'}")
+        numbers = report(gpu, found, view.tolerance)
+        text = json.dumps(numbers | {"preset": dumps(state)}, indent=2, allow_nan=False)
+        if output and suffix != ".json":
+            rows = -(-len(found) // 2)
+            save_view(gpu, state, "chart", output, size or ((1200, 400 * rows + 90) if rows > 1 else (800, 600)))
+    if output and suffix == ".json":
+        write_text(output, f"{text}\n")
+    if as_json:
+        click.echo(text)
+        return
+    for one in numbers["ladders"]:
+        print_tradeoff(one)
+    click.echo(f"{numbers['driver']}; {numbers['machine']}; medians and quartiles of repeats in turns")
+    if output:
+        click.echo(f"{output}: {', '.join(one['ladder'] for one in numbers['ladders'])}")
+
+
+def print_tradeoff(one):
+    """The table of one of measure.tradeoff.report's ladders."""
+    title = f"{one['ladder']}: {one['question']}"
+    if "reason" in one:
+        click.echo(f"{title}\n{one['reason']}\n")
+        return
+    of = one["cost"]["of"]
+    unit, per = ("ms", 1e3) if of == "frame" else ("ns", 1e9)
+    cheapest = "least time" if of == "sample" else "cheapest"
+    rows = []
+    for m in one["methods"]:
+        cost, error = m["cost"], m["error"]
+        marks = ["front"] * m["front"] + [cheapest] * (m["name"] == one["best"])
+        known = "exact" if m["exact"] else f"{error['value']:.3g}"
+        rows.append(
+            (
+                m["name"],
+                f"{per * cost['median']:.4g} {unit}",
+                f"{per * cost['low']:.4g} to {per * cost['high']:.4g}",
+                str(cost["repeats"]),
+                known,
+                f"{error['error']:.1g}",
+                ", ".join(marks),
+                f"outside: {m['outside']}" if m["outside"] else "",
+            )
+        )
+    heads = (
+        "method",
+        f"cost of a {one['cost']['of']}",
+        "quartiles",
+        "repeats",
+        one["metric"]["name"],
+        "within",
+        "",
+        "",
+    )
+    print_table(heads, rows, title=f"{title} {one['metric']['title']}, against {one['reference']['name']}")
+
+
+def write_text(path, text):
+    from .state import replacing
+
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8", newline="\n")
+
+
+@main.command()
 @click.argument("presets", nargs=-1)
 @click.option("--scene", default="studio", show_default=True, metavar="PRESET", help="The light and the look.")
 @click.option("--size", type=Size(), default="480x360", show_default=True, help="Pixels of each picture.")
