@@ -104,7 +104,7 @@ LADDERS = {
             applies=lambda model: model.fresnel != "one",
             outside={"dielectric": absorbs},
         ),
-        of_choice("diffuse", "Does the roughness of a diffuse surface show?", "f", ("lambert", "oren_nayar")),
+        of_choice("diffuse", "Does the roughness of a diffuse surface show?", "f", ("lambert", "oren_nayar", "eon")),
         of_choice(
             "sampling",
             "How are directions drawn?",

@@ -33,7 +33,7 @@ MATERIALS = [
     MICROFACET(alpha=(0.3, 0.6)),
     MICROFACET(alpha=0.6, ndf="beckmann"),
     MICROFACET(alpha=0.2, eta=1.5, k=0.0, fresnel="dielectric"),
-    DIFFUSE(diffuse="oren_nayar"),
+    DIFFUSE(diffuse="eon"),
 ]
 STATES = [State(light=Light(environment="studio")).with_model(m) for m in MATERIALS]
 GOLD = STATES[0]
