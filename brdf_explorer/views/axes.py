@@ -35,9 +35,10 @@ class Axis:
             step = nice_step((self.high - self.low) / count)
             return step * np.arange(np.ceil(self.low / step - 1e-9), np.floor(self.high / step + 1e-9) + 1)
         low, high = np.log10([self.low, self.high])
-        if 3 * (high - low) <= count:  # 1, 2 and 5 of each decade
+        if 3 * (high - low) <= count:  # 1, 2 and 5 of each decade, or even steps where those are too few
             found = np.outer(10.0 ** np.arange(np.floor(low), np.ceil(high) + 1), [1, 2, 5]).ravel()
-            return found[(found >= self.low * (1 - 1e-9)) & (found <= self.high * (1 + 1e-9))]
+            found = found[(found >= self.low * (1 - 1e-9)) & (found <= self.high * (1 + 1e-9))]
+            return found if len(found) > 2 else Axis(self.low, self.high).ticks(room, spacing)
         step = max(int(np.ceil((high - low) / count)), 1)
         return 10.0 ** np.arange(np.ceil(low - 1e-9), np.floor(high + 1e-9) + 1, step)
 
