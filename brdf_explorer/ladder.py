@@ -61,14 +61,15 @@ class Ladder:
         )
 
 
-def of_choice(name, question, measures, options, applies=None, outside=None):
-    """The Ladder of a choice of that name among a model's, its options from the cheapest to the reference."""
+def of_choice(name, question, measures, options, applies=None, outside=None, choice=None):
+    """The Ladder of a choice among a model's, named as it unless said, its options from the cheapest to the reference."""
+    choice = choice or name
 
     def has(state):
-        return name in declared(state.model, Choice) and (applies is None or applies(state.model))
+        return choice in declared(state.model, Choice) and (applies is None or applies(state.model))
 
     outside = outside or {}
-    methods = tuple(Method(o, {name: o}, outside.get(o, within)) for o in options)
+    methods = tuple(Method(o, {choice: o}, outside.get(o, within)) for o in options)
     return Ladder(name, question, "material", measures, methods, has)
 
 
@@ -104,7 +105,15 @@ LADDERS = {
             applies=lambda model: model.fresnel != "one",
             outside={"dielectric": absorbs},
         ),
+        # "diffuse" has two truths: a rough surface is not a heap of grains, so each has its own question
         of_choice("diffuse", "Does the roughness of a diffuse surface show?", "f", ("lambert", "oren_nayar", "eon")),
+        of_choice(
+            "spheres",
+            "Does it show that a body consists of grains?",
+            "f",
+            ("lambert", "lambert_sphere"),
+            choice="diffuse",
+        ),
         of_choice(
             "sampling",
             "How are directions drawn?",

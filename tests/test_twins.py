@@ -28,9 +28,11 @@ CHUNKS = sorted(p.stem for p in (SHADERS / "lib").glob("*.glsl"))
 ONLY_NUMPY = {
     "common": {"dot", "length", "normalize", "mix", "quotient", "vec", "split", "above_horizon"},  # words that GLSL has
     "srgb": {"srgb_decode"},  # colours of the interface become linear once, on their way in
+    "lambert_sphere": {"polynomial"},  # a series of one variable
 }
 ONLY_GLSL = {
     "ndf_beckmann": {"leading"},  # of float32's rounding
+    "lambert_sphere": {"series"},
 }
 COLORS = {"f", "diffuse_f", "F", "tonemap", "srgb_encode"}
 """Functions whose components are compared each; other vectors are compared relative to their length."""
@@ -138,6 +140,8 @@ DRAWS = {
     "F0": either(decades(1e-6, 1), uniform(0, 1)),
     "sigma": either(decades(1e-4, 1), uniform(0, 1)),
     "r": either(ZERO, uniform(0, 1)),
+    "mu": COSINE,
+    "s": uniform(0, 1),
     "albedo": either(ZERO, uniform(0, 1)),
     "Lambda_o": either(ZERO, decades(1e-6, 1e4)),
     "Lambda_i": either(ZERO, decades(1e-6, 1e4)),

@@ -17,9 +17,13 @@ class Diffuse(Model):
     albedo: tuple = param((0.8, 0.8, 0.8), 0.0, 1.0, "share of the light that a facet reflects, linear RGB", color=True)
     sigma: float = param(0.3, 0.0, 1.0, "standard deviation of the facets' angle of slope, for oren_nayar", unit="rad")
     r: float = param(0.5, 0.0, 1.0, "roughness of eon, Fujii's: 0 is Lambert's law")
-    diffuse: str = choice("lambert", ("lambert", "oren_nayar", "eon"), "law of reflection")
+    diffuse: str = choice("lambert", ("lambert", "oren_nayar", "eon", "lambert_sphere"), "law of reflection")
 
     def exceptions(self):
+        if (
+            self.diffuse == "lambert_sphere"
+        ):  # white spheres gain 7e-5: of their phase function only the first scattering is exact
+            return {"energy": 1.0001}
         if self.diffuse != "oren_nayar":
             return {}
         # largest for a grazing viewer: A + B/2, the mean of the factors A at the normal and A + B between horizon and 45 degrees
@@ -35,7 +39,7 @@ class Diffuse(Model):
 
     def sample_f(self, wo, u):
         wi = cosine_hemisphere(u)
-        return wi, PI * self.f(wo, wi)
+        return wi, above_horizon(lambda o, i: PI * self._law(o, i), wo, wi, 3)
 
     def _law(self, wo, wi):
         return slot("diffuse", self.diffuse).diffuse_f(wo, wi, self.albedo, self.sigma, self.r)

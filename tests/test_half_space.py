@@ -1,0 +1,115 @@
+"""The half space of Lambertian spheres: the exact solution against its definitions and walks among spheres; tables against it."""
+
+import re
+
+import numpy as np
+import pytest
+
+from brdf_explorer.glsl import SHADERS
+from brdf_explorer.lib.lambert_sphere import TABLE, sphere_c, sphere_s
+from brdf_explorer.measure import half_space
+from brdf_explorer.measure.grid import direction
+from brdf_explorer.models import MODELS
+
+Diffuse = MODELS["diffuse"]
+S = (0.0, 1e-4, 0.01, 0.1, 0.3, 0.7)
+
+
+def printed_K(mp, mode, c, t):
+    """Eqs. 24 to 26 as printed, at high precision."""
+    a = mp.atan(t)
+    if mode == 0:
+        b = (256 * c - 301) * t**3 + ((346 - c * (20 * c + 281)) * t**2 - 15 * (c - 1) * (4 * c + 9) + 207 * t**4) * a
+        return 1 - c * (b + 15 * (c - 1) * (4 * c + 9) * t) / (192 * t**5)
+    if mode == 1:
+        b = (40 * c + 282) * t**3 - 3 * (t**2 + 1) * (20 * c + 64 * t**2 + 45) * a + 15 * (4 * c + 9) * t
+        return 1 - c * b / (288 * t**5)
+    return 1 - 5 * c * (3 * (t**2 + 1) ** 2 * a - t * (5 * t**2 + 3)) / (128 * t**5)
+
+
+@pytest.mark.parametrize("mode", half_space.MODES)
+def test_K_is_the_printed_one(mode):
+    mp = pytest.importorskip("mpmath").mp
+    t = np.array([1e-6, 1e-3, 0.1, 0.9, 1.1, 10.0, 1e4])
+    with mp.workdps(60):
+        for s in S[2:]:
+            c = (1 - mp.mpf(s)) * (1 + mp.mpf(s))
+            expected = [float(printed_K(mp, mode, c, mp.mpf(float(x)))) for x in t]
+            np.testing.assert_allclose(half_space.K(mode, s, t), expected, rtol=1e-13)
+
+
+@pytest.mark.parametrize("mode", half_space.MODES)
+def test_H_keeps_its_equation(mode):
+    """H = 1 + mu H int Psi H / (mu + nu) dnu."""
+    mu = np.array([1e-3, 0.1, 0.5, 1.0])
+    root, weight = half_space.nodes(200)
+    nu = root**3
+    for s in S:
+        Psi = (1 - s) * (1 + s) * half_space.psi(mode, s) @ [nu**0, nu**2, nu**4]
+        found = half_space.H(mode, s, mu)
+        integral = (3 * root**2 * weight * Psi * half_space.H(mode, s, nu) / (mu[:, None] + nu)).sum(axis=1)
+        np.testing.assert_allclose(found, 1 + mu * found * integral, rtol=1e-12)
+
+
+def test_energy():
+    """White spheres keep it, and near c = 1 no other root is met: the albedo falls with s."""
+    for cosine in (1.0, 0.7, 0.1, 0.01):
+        wo = direction(np.arccos(cosine), 0.0)
+        values = [half_space.albedo(wo, s) for s in (0.0, 1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3)]
+        assert values[0] == pytest.approx(1, abs=1.2e-4)
+        assert np.all(np.diff(values) < 0) and np.all(np.diff(values)[:3] > -0.03)
+
+
+def about(rng, n):
+    """Directions spread by the cosine about n (..., 3)."""
+    v = rng.normal(size=n.shape)
+    v = v / np.linalg.norm(v, axis=-1, keepdims=True) + n
+    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+
+
+def walked(wo, wi, c, n, rng):
+    """f (m,) and its standard error by walks among spheres, each hit at a normal spread as a sphere shows it."""
+    depth, w, walk = np.zeros(n), np.tile(-wo, (n, 1)), np.arange(n)
+    found = np.zeros((n, len(wi)))
+    while len(walk):
+        depth = depth - w[:, 2] * rng.exponential(size=len(w))
+        on = (depth > 0) & (rng.random(len(w)) < c)
+        depth, w, walk = depth[on], w[on], walk[on]
+        normal = about(rng, -w)
+        with np.errstate(under="ignore"):
+            found[walk] += np.maximum(normal @ wi.T, 0) / np.pi * np.exp(-depth[:, None] / wi[:, 2]) / wi[:, 2]
+        w = about(rng, normal)
+    return found.mean(axis=0), found.std(axis=0) / np.sqrt(n)
+
+
+@pytest.mark.parametrize(("s", "theta"), [(0.5, 10.0), (0.25, 70.0)])
+def test_agrees_with_walks_among_spheres(s, theta):
+    wo, wi = direction(np.radians(theta), 0.0), direction(*np.radians([[20, 70, 70, 70, 85], [0, 0, 90, 180, 180]]))
+    value, error = walked(wo, wi, 1 - s * s, 150_000, np.random.default_rng(7))
+    expected = half_space.f(wo, wi, s)
+    assert np.all(np.abs(value - expected) <= np.maximum(3 * error, 2e-3 * expected))
+    if theta == 70.0:
+        wrong = half_space.f(wo, wi, s, doubled=False)  # Eq. 27 without the 2
+        assert np.any(np.abs(value - wrong) > 4 * error)
+
+
+def test_tables_hold_the_exact_form():
+    rng = np.random.default_rng(1)
+    z = np.where(rng.random((2, 2000)) < 0.5, 1e-4 ** rng.random((2, 2000)), rng.random((2, 2000)))
+    wo, wi = direction(np.arccos(z), rng.uniform(0, 2 * np.pi, z.shape))
+    for albedo in (1.0, 0.999, 0.9, 0.5, 0.05):
+        found = Diffuse(albedo=albedo, diffuse="lambert_sphere").f(wo, wi)[:, 0]
+        exact = half_space.f(wo, wi, float(sphere_s(albedo)))
+        assert np.max(np.abs(found / exact - 1)) < 4e-5
+
+
+def test_albedo_maps_to_c():
+    a = np.linspace(0, 1, 1001)
+    np.testing.assert_allclose(sphere_c(a), 1 - sphere_s(a) ** 2, atol=4e-10)
+    assert sphere_c(0.0) == 0 and sphere_s(1.0) == 0
+
+
+def test_the_twins_hold_one_table():
+    text = (SHADERS / "lib/lambert_sphere.glsl").read_text(encoding="utf-8")
+    body = re.sub(r"//.*", "", text[text.index("= float[258](") + 13 : text.index(");")])
+    np.testing.assert_array_equal(np.array(body.split(","), dtype=float), TABLE)
