@@ -72,7 +72,7 @@ def phase(wo, wi):
 
 
 def sphere_c(albedo):
-    """c of a diffuse albedo, d'Eon's fit, Eq. 46. Takes c above 1 by 2e-10 where the albedo is above 0.9988."""
+    """c of a diffuse albedo, d'Eon's fit, Eq. 46. Takes c above 1 by up to 3e-10 where the albedo is above 0.9988."""
     lost = _log_lost(albedo)
     return -np.expm1(2.73556 * lost) / (1 - 0.184096 * np.exp(2.48423 * lost))
 

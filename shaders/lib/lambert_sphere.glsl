@@ -62,7 +62,7 @@ float phase(vec3 wo, vec3 wi) {
   return 2.0 / (3.0 * PI * PI) * cubic;
 }
 
-// c of a diffuse albedo, d'Eon's fit, Eq. 46. Takes c above 1 by 2e-10 where the albedo is above 0.9988.
+// c of a diffuse albedo, d'Eon's fit, Eq. 46. Takes c above 1 by up to 3e-10 where the albedo is above 0.9988.
 vec3 sphere_c(vec3 albedo) {
   vec3 c;
   for (int i = 0; i < 3; i++) {
