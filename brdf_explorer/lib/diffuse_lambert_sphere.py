@@ -2,9 +2,10 @@
 BRDF for Materials with Spherical Lambertian Scatterers": one scattering exactly, further ones by the modes 0, 1, 2 of the phase
 function's first three Legendre terms. The albedo is the one that his Eq. 46 maps to c, nearly the body's in even light.
 
-The tables err by 3.9e-5 of f at most against the exact form (20000 pairs, cosines down to 1e-4). What its three terms
-leave out is lost in the noise, 1e-3 to 2e-3 of f, of walks among spheres. The albedo of white spheres is 1 within 1.2e-4, at most
-1.00007, since only the first scattering is exact. Eq. 27 is a Fourier coefficient and counts twice: read without the 2 it errs by up to 31 % of f.
+The tables err by 3.9e-5 of f at most against the exact form (20000 pairs, cosines down to 1e-4). What its three terms leave out
+is lost in the noise, 1e-3 to 2e-3 of f, of walks among spheres. The albedo of white spheres is 1 within 1.2e-4, at most 1.00008,
+since only the first scattering is exact. Eq. 27 is a Fourier coefficient and counts twice: read without the 2 it errs by up to
+20 % of f.
 """
 
 from .common import PI, dot, split

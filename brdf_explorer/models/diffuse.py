@@ -22,7 +22,7 @@ class Diffuse(Model):
     def exceptions(self):
         if (
             self.diffuse == "lambert_sphere"
-        ):  # white spheres gain 7e-5: of their phase function only the first scattering is exact
+        ):  # white spheres gain 8e-5: of their phase function only the first scattering is exact
             return {"energy": 1.0001}
         if self.diffuse != "oren_nayar":
             return {}

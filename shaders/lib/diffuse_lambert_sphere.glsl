@@ -3,8 +3,8 @@
 // phase function's first three Legendre terms. The albedo is the one that his Eq. 46 maps to c, nearly the body's in even light.
 // The tables err by 3.9e-5 of f at most against the exact form (20000 pairs, cosines down to 1e-4). What its three
 // terms leave out is lost in the noise, 1e-3 to 2e-3 of f, of walks among spheres. The albedo of white spheres is 1 within 1.2e-4,
-// at most 1.00007, since only the first scattering is exact.
-// Eq. 27 is a Fourier coefficient and counts twice: read without the 2 it errs by up to 31 % of f.
+// at most 1.00008, since only the first scattering is exact.
+// Eq. 27 is a Fourier coefficient and counts twice: read without the 2 it errs by up to 20 % of f.
 #include "lib/lambert_sphere.glsl"
 
 vec3 diffuse_f(vec3 wo, vec3 wi, vec3 albedo, float sigma, float r) {
