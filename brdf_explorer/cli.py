@@ -6,6 +6,7 @@ Only click is imported here at first; all else is imported inside the command th
 import os
 import re
 import sys
+import textwrap
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -14,6 +15,7 @@ import click
 from . import __version__
 
 BAD_INPUT = 2
+DOMAIN = 56  # letters of a line of a parameter's choices
 NUMBER = re.compile(r"[+-]?(\.?\d|inf|nan)", re.IGNORECASE)  # what begins so is a value, not a flag
 
 
@@ -581,6 +583,7 @@ def models(markdown):
             click.echo()
         return
     for name, rows in tables.items():
+        rows = [(parameter, textwrap.fill(domain, DOMAIN), *others) for parameter, domain, *others in rows]
         print_table(heads, rows, title=f"{name}: {summary(MODELS[name])}")
 
 

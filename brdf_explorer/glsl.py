@@ -117,10 +117,10 @@ def params_glsl(name, cls):
 
 
 def of_model(path, model, dialect="330 core", slots=None, generated=None, formulas="stable"):
-    """A shader that uses the model: {model} and its choices fill slots, `params.glsl` declares `material`."""
+    """A shader that uses the model: {model} and its slots are filled, `params.glsl` declares `material`."""
     return assemble(
         path,
-        {"model": model.name(), **model.choices(), **(slots or {})},
+        {"model": model.name(), **model.slots(), **(slots or {})},
         {"params.glsl": params_glsl("material", type(model)), **(generated or {})},
         dialect,
         formulas,

@@ -7,6 +7,7 @@ by a line here, a new question by one Ladder in LADDERS.
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from .lib import slot
 from .model import Choice, declared
 
 
@@ -14,16 +15,22 @@ def within(state):
     return ""
 
 
+def exact(state):
+    return 0.0
+
+
 @dataclass(frozen=True)
 class Method:
     """An answer. changes: the parameters of the ladder's section that choose it; None: in float64 by numpy, not in a shader.
 
-    outside(state): why the method leaves its domain there, in a few words, or "".
+    outside(state): why the method leaves its domain there, in a few words, or "". own(state): how far it may itself be from the
+    truth that it stands for as a reference, relative.
     """
 
     name: str
     changes: dict | None
     outside: Callable = within
+    own: Callable = exact
 
 
 @dataclass(frozen=True)
@@ -61,20 +68,28 @@ class Ladder:
         )
 
 
-def of_choice(name, question, measures, options, applies=None, outside=None, choice=None):
+def of_choice(name, question, measures, options, applies=None, outside=None, own=None, choice=None):
     """The Ladder of a choice among a model's, named as it unless said, its options from the cheapest to the reference."""
     choice = choice or name
 
     def has(state):
         return choice in declared(state.model, Choice) and (applies is None or applies(state.model))
 
-    outside = outside or {}
-    methods = tuple(Method(o, {choice: o}, outside.get(o, within)) for o in options)
+    outside, own = outside or {}, own or {}
+    methods = tuple(Method(o, {choice: o}, outside.get(o, within), own.get(o, exact)) for o in options)
     return Ladder(name, question, "material", measures, methods, has)
 
 
 def absorbs(state):
     return "k is not 0" if max(state.model.k) > 0 else ""
+
+
+def of_no_metal(state):
+    return "no spectrum is chosen: the same as conductor" if state.model.spectrum == "none" else ""
+
+
+def of_spectrum(state):
+    return slot("fresnel", "spectral", state.model.spectrum).ERROR
 
 
 def not_of_ggx(state):
@@ -101,9 +116,10 @@ LADDERS = {
             "fresnel",
             "How exact must the reflectance of a facet be?",
             "f",
-            ("schlick", "dielectric", "conductor"),
+            ("constant", "schlick", "f82", "dielectric", "conductor", "spectral"),
             applies=lambda model: model.fresnel != "one",
-            outside={"dielectric": absorbs},
+            outside={"dielectric": absorbs, "spectral": of_no_metal},
+            own={"spectral": of_spectrum},
         ),
         # "diffuse" has two truths: a rough surface is not a heap of grains, so each has its own question
         of_choice("diffuse", "Does the roughness of a diffuse surface show?", "f", ("lambert", "oren_nayar", "eon")),

@@ -1,5 +1,7 @@
 """Ladders are true to the models they are about."""
 
+from dataclasses import replace
+
 import pytest
 
 from brdf_explorer.ladder import LADDERS
@@ -33,3 +35,5 @@ def test_reference_follows_the_domain():
     ladder = LADDERS["fresnel"]
     (dielectric,) = (m for m in ladder.methods if m.name == "dielectric")
     assert [dielectric.outside(s) != "" for s in STATES[:4]] == [False, True, False, True]
+    gold = STATES[1].with_model(replace(STATES[1].model, spectrum="gold"))
+    assert [ladder.reference(s).name for s in (STATES[0], STATES[1], gold)] == ["conductor", "conductor", "spectral"]

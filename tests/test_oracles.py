@@ -104,9 +104,16 @@ class Textbook:
         if fresnel == "one":
             return mp.mpf(1)
         n = mp.mpc(eta, 0 if fresnel == "dielectric" else k)
+        F0 = abs((n - 1) / (n + 1)) ** 2
+        if fresnel == "constant":
+            return F0
+        schlick = [F0 + (1 - F0) * (1 - x) ** 5 for x in (c, mp.mpf(1) / 7)]
         if fresnel == "schlick":
-            F0 = abs((n - 1) / (n + 1)) ** 2
-            return F0 + (1 - F0) * (1 - c) ** 5
+            return schlick[0]
+        if fresnel == "f82":
+            edge = min(self.F("conductor", mp.mpf(1) / 7, eta, k), schlick[1])
+            bend = c * (1 - c) ** 6 / (mp.mpf(1) / 7 * (mp.mpf(6) / 7) ** 6)
+            return max(schlick[0] - (schlick[1] - edge) * bend, mp.mpf(0))
         t = mp.sqrt(1 - (1 - c * c) / n**2)
         rs, rp = (c - n * t) / (c + n * t), (n * c - t) / (n * c + t)
         return (abs(rs) ** 2 + abs(rp) ** 2) / 2
@@ -140,7 +147,9 @@ def test_microfacet_at_50_digits(alpha):
             for f in CHOICES["fresnel"].options
         }
         for f, values in F.items():
-            facet = slot("fresnel", f).F(np.array([float(x) for x in c]), np.array(eta), np.array(k))
+            facet = slot("fresnel", *(["spectral", "none"] if f == "spectral" else [f])).F(
+                np.array([float(x) for x in c]), np.array(eta), np.array(k)
+            )
             assert_close(facet, values, f)
         for ndf in CHOICES["ndf"].options:
             module = slot("ndf", ndf)

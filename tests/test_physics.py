@@ -1,6 +1,7 @@
 """Laws of reflection and answers known in closed form, in float64; and each figure that the formulas' headers state."""
 
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from oracles.cases import CASES
 from brdf_explorer.lib import fresnel, slot
 from brdf_explorer.lib.colormap import diverging, viridis
 from brdf_explorer.lib.common import PI, dot, length, normalize, vec
+from brdf_explorer.lib.spectrum import F_spectral
 from brdf_explorer.measure.albedo import albedo
 from brdf_explorer.measure.grid import direction
 from brdf_explorer.model import Choice, declared
@@ -325,6 +327,70 @@ def test_schlick_error(eta, k, error):
     assert off.max() == pytest.approx(error, abs=0.5 * 10 ** np.floor(np.log10(error) - 1))
     if eta == 1.5:
         assert np.degrees(np.arccos(COSINES[off.argmax()])) == pytest.approx(85, abs=0.5)
+
+
+@pytest.mark.parametrize(
+    "eta, k, error",
+    [(1.5, 0.0, 0.028), (1.05, 0.0, 0.058), (3.5, 0.0, 0.032), (5.6, 1.2, 0.074), (0.143, 3.98, 0.0039)],
+    ids=str,
+)
+def test_f82_error(eta, k, error):
+    """It meets the exact curve along the normal, at a cosine of 1/7 and at the horizon."""
+    exact = [fresnel.F_conductor(c, eta, k) for c in (COSINES, 1 / 7)]
+    off = np.abs(fresnel.F_f82(COSINES, fresnel.F0(eta, k), exact[1]) - exact[0])
+    assert off.max() == pytest.approx(error, abs=0.5 * 10 ** np.floor(np.log10(error) - 1))
+    ends = fresnel.F_f82(np.array([1.0, 1 / 7, 0.0]), fresnel.F0(eta, k), exact[1])
+    np.testing.assert_allclose(ends, [fresnel.F0(eta, k), exact[1], 1.0], rtol=1e-13)
+    if eta == 1.5:
+        assert np.degrees(np.arccos(COSINES[off.argmax()])) == pytest.approx(68, abs=0.5)
+
+
+def test_f82_is_a_share():
+    """Indices next to 1 would make it negative, and those below 1 larger than 1."""
+    eta = np.concatenate([ETA, np.linspace(1.0, 1.1, 50)])[:, None]
+    values = fresnel.F_f82(COSINES[:, None, None], fresnel.F0(eta, K), fresnel.F_conductor(1 / 7, eta, K))
+    assert values.min() == 0 and values.max() <= 1 + 1e-15
+
+
+@pytest.mark.parametrize("eta, k, error", [(1.5, 0.0, 0.96), (0.05, 3.613, 0.014)], ids=str)
+def test_constant_error(eta, k, error):
+    assert 1 - slot("fresnel", "constant").F(0.5, np.array([eta] * 3), np.array([k] * 3))[0] == pytest.approx(
+        error, abs=5e-4
+    )
+
+
+def spectral(eta, k, table):
+    """Reflectance (90, 3) in linear RGB at 0, 1, ... 89 degrees by complex numbers, from observer and light at 5 nm."""
+    nm, observer, light = table[:, 0], table[:, 1:4], table[:, 4]
+    n = np.interp(nm, *eta) + 1j * np.interp(nm, *k)
+    c = np.cos(np.radians(np.arange(90)))[:, None]
+    t = np.sqrt(1 - (1 - c * c) / n**2)
+    R = (np.abs((c - n * t) / (c + n * t)) ** 2 + np.abs((n * c - t) / (n * c + t)) ** 2) / 2
+    xyz, white = (np.einsum("an,n,nc->ac", r, light, observer) for r in (R, np.ones((1, len(nm)))))
+    # Rec. 709: chromaticities of the primaries, scaled so that their sum is white
+    primaries = np.array([[0.64, 0.33, 0.03], [0.30, 0.60, 0.10], [0.15, 0.06, 0.79]]).T
+    return np.linalg.solve(primaries * np.linalg.solve(primaries, white[0]), xyz.T).T
+
+
+@pytest.mark.parametrize("metal", ["gold", "copper"])
+def test_spectral_error(metal):
+    """The 16 wavelengths against the whole spectrum, from published tables of the observer, the light and the metal."""
+    folder = Path(__file__).parent / "oracles"
+    table = np.loadtxt(folder / "observer.csv", delimiter=",")
+    points = np.loadtxt(folder / f"{metal}.csv", delimiter=",").T
+    module = slot("fresnel", "spectral", metal)
+    c = np.cos(np.radians(np.arange(90)))
+    off = np.abs(module.F(c, None, None) - spectral(points[[0, 1]], points[[0, 2]], table))
+    assert 0.5 * module.ERROR < off.max() <= module.ERROR <= 9.3e-4
+    if metal == "gold":
+        assert module.F(c, None, None).max() == pytest.approx(1.037, abs=5e-4)
+
+
+def test_a_spectrum_without_features_is_its_index():
+    """The wavelengths' weights are those of white: at each of them the same index, it is that of a conductor."""
+    for eta, k in ((1.5, 0.0), (0.2, 4.0)):
+        flat = F_spectral(COSINES, np.full(16, eta), np.full(16, k))
+        np.testing.assert_allclose(flat, fresnel.F_conductor(COSINES, eta, k)[:, None].repeat(3, 1), atol=1.1e-6)
 
 
 def test_schlick_knows_no_total_internal_reflection():

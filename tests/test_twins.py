@@ -11,11 +11,12 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from oracles.cases import CASES, case_label, pairwise
+from oracles.cases import CASES, case_label, choices_of, pairwise
 
 from brdf_explorer.glsl import SHADERS, Signature, assemble, functions
+from brdf_explorer.lib import fresnel
 from brdf_explorer.lib.common import PI, TWO_PI, length, normalize, quotient, vec
-from brdf_explorer.model import Choice, Param, declared
+from brdf_explorer.model import Param, declared
 from brdf_explorer.models import MODELS
 
 COMMON, COMMON_SHARE = 1e-5, 0.999
@@ -138,6 +139,7 @@ DRAWS = {
     "k": either(ZERO, uniform(0, 15), decades(1e-4, 15)),
     "c": COSINE,
     "F0": either(decades(1e-6, 1), uniform(0, 1)),
+    "F82": uniform(0, 1),
     "sigma": either(decades(1e-4, 1), uniform(0, 1)),
     "r": either(ZERO, uniform(0, 1)),
     "mu": COSINE,
@@ -204,6 +206,9 @@ FLOORS = {
     "fresnel.eta2_cos2_t": lambda c, eta: (
         1.2e-7 * np.where(eta < 0.7, eta**2 + (1 - c) * (1 + c), np.abs(eta**2 - 1) + c**2)
     ),
+    # Schlick's curve less what bends it, each known to 8 roundings.
+    "fresnel.F_f82": lambda c, F0, F82: 8 * 6e-8 * fresnel.F_schlick(c, F0),
+    "fresnel_f82.F": lambda c, eta, k: 8 * 6e-8 * fresnel.F_schlick(c[:, None], fresnel.F0(eta, k)),
     # Blacks are differences of numbers near 0.1, and a display value below 1e-6 is black on any screen.
     "tonemap_aces.tonemap": lambda color: 1e-6,
     "tonemap_agx.tonemap": lambda color: 1e-6,
@@ -298,7 +303,8 @@ def test_constants_are_the_same(chunk):
 
 @pytest.mark.parametrize(
     "function",
-    [f for f in LIB if not f.over_maps and f.name not in ONLY_GLSL.get(chunk_of(f), ())],
+    # F_spectral is tested by each metal's F, which brings its tables
+    [f for f in LIB if not f.over_maps and f.name != "F_spectral" and f.name not in ONLY_GLSL.get(chunk_of(f), ())],
     ids=label,
 )
 def test_chunk(gpu, function):
@@ -355,9 +361,10 @@ def exempt(model, wo, wi):
     The cosine has an error of 1.2e-7, so t^2 one of 2.4e-7 c^2. Beyond t = eta^2 / c the slope of F falls as 2 eta^2 / t^2: for
     eta = 0.1, the worst, F errs by more than WORST where t^2 < 1.8e-4 c^2. In angle that is 0.005 degrees.
     """
-    if model.choices().get("fresnel") not in ("dielectric", "conductor"):
+    facet = model.slots().get("fresnel")
+    if facet not in ("dielectric", "conductor", "spectral_none"):
         return np.zeros((len(wo), 3), dtype=bool)
-    k = np.array(model.k) if model.fresnel == "conductor" else 0.0
+    k = 0.0 if facet == "dielectric" else np.array(model.k)
     found = near_critical(0.5 * length(wo + wi)[:, None], np.array(model.eta), k, 2e-4)
     assert np.mean(found) < 5e-3  # even directions meet 8e-4 at most; 15 of 3000 instead of 2.4 are a chance of 1e-8
     return found
@@ -460,7 +467,7 @@ def test_models_have_the_functions_of_their_shaders(cls):
 
 def test_cases_hold_all_pairs_of_options():
     for cls in MODELS.values():
-        choices = {name: c.options for name, c in declared(cls, Choice).items()}
+        choices = choices_of(cls)
         held = {pair for c, case in CASES if c is cls for pair in combinations(case.items(), 2)}
         sizes = [len(options) for options in choices.values()]
         assert len(held) == sum(a * b for a, b in combinations(sizes, 2))

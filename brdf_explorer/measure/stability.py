@@ -459,13 +459,19 @@ def subjects(model):
     called = set(re.findall(r"\b(\w+)\(", text))
     found = []
     for include in re.findall(r'#include "(lib/[^"]+)"', text):
-        file = filled(include, model.choices(), path)
-        chosen = {k: v for k, v in model.choices().items() if f"{{{k}}}" in include}
+        file = filled(include, model.slots(), path)
+        chosen = {k: v for k, v in model.choices().items() if len(_fillings(include, model, k)) > 1}
         for function in _all_functions(file):
             there = hasattr(slot(file[4:-5]), function.name)
             if there and function.name in called - PARTS - {s.name for s in found}:
                 found.append(_chunk(cls, file, function, chosen))
     return found + [_of_model(cls, model, function) for function in functions(path)]
+
+
+def _fillings(include, model, choice):
+    """What the slots of a path become by the options of a choice."""
+    options = declared(model, Choice)[choice].options
+    return {filled(include, replace(model, **{choice: o}).slots(), include) for o in options}
 
 
 def _all_functions(file):

@@ -9,6 +9,22 @@ from ..lib.common import HORIZON, above_horizon, split
 from ..lib.microfacet import cos_facet
 from ..model import Model, choice, param
 
+METALS = (
+    "gold",
+    "silver",
+    "copper",
+    "brass",
+    "aluminium",
+    "chrome",
+    "iron",
+    "stainless_steel",
+    "titanium",
+    "nickel",
+    "palladium",
+    "mercury",
+)
+"""Those of lib/fresnel_spectral_*."""
+
 
 @dataclass(frozen=True)
 class Microfacet(Model):
@@ -27,13 +43,24 @@ class Microfacet(Model):
         ("none", "separable", "correlated", "directional", "full"),
         "how masking towards the viewer and shadowing from the light combine",
     )
-    fresnel: str = choice("conductor", ("conductor", "dielectric", "schlick", "one"), "reflectance of a facet")
+    fresnel: str = choice(
+        "conductor",
+        ("spectral", "conductor", "dielectric", "f82", "schlick", "constant", "one"),
+        "reflectance of a facet",
+    )
+    spectrum: str = choice("none", ("none", *METALS), "metal whose spectrum of eta and k is that of fresnel = spectral")
     sampling: str = choice(
         "caps",
         ("uniform", "cosine", "ndf", "visible", "caps", "bounded"),
         "how sample_f draws directions: over the hemisphere, by D, or by the normals that the viewer sees",
     )
     smith: str = choice("exact", ("exact", "rational"), "Smith's Lambda of Beckmann: exact, or Walter's rational fit")
+
+    def slots(self):
+        found = self.choices()
+        if self.fresnel == "spectral":  # each metal has a file
+            found["fresnel"] = f"spectral_{self.spectrum}"
+        return found
 
     def slopes(self):
         return self.alpha
@@ -42,6 +69,8 @@ class Microfacet(Model):
         found = {}
         if self.ndf == "beckmann" and self.smith == "rational":  # the fit's G1 errs by 3.1e-3
             found["weak white furnace"] = 3.2e-3
+        if self.fresnel == "spectral" and self.spectrum == "gold":  # its red is outside of the primaries
+            found["energy"] = 1.038
         if self.shadowing == "none":
             found["energy"] = np.inf
         return found
@@ -51,7 +80,7 @@ class Microfacet(Model):
         D = slot("ndf", self.ndf).D
 
         def value(wo, wi):
-            facet = slot("fresnel", self.fresnel).F(cos_facet(wo, wi), np.array(self.eta), np.array(self.k))
+            facet = self._F(wo, wi)
             scale = D(wo + wi, alpha) * self._G2(wo, wi) / (4 * split(wo)[2] * split(wi)[2])
             return facet * scale[..., None]
 
@@ -74,7 +103,7 @@ class Microfacet(Model):
             wi[up] = sampling.sample_wi(wo[up], u[up], alpha)
 
         def weight(wo, wi):
-            facet = slot("fresnel", self.fresnel).F(cos_facet(wo, wi), np.array(self.eta), np.array(self.k))
+            facet = self._F(wo, wi)
             share = sampling.weight_wi(wo, wi, D(wo + wi, alpha), alpha)
             return facet * (self._G2(wo, wi) * share / split(wo)[2])[..., None]
 
@@ -82,9 +111,11 @@ class Microfacet(Model):
 
     def factors(self, wo, wi):
         """D, G, F and the Jacobian, whose product is f, for directions above the horizon: name -> (...), of F (..., 3)."""
-        F = slot("fresnel", self.fresnel).F(cos_facet(wo, wi), np.array(self.eta), np.array(self.k))
         D = slot("ndf", self.ndf).D(wo + wi, np.array(self.alpha))
-        return {"D": D, "G": self._G2(wo, wi), "F": F, "jacobian": 1 / (4 * split(wo)[2] * split(wi)[2])}
+        return {"D": D, "G": self._G2(wo, wi), "F": self._F(wo, wi), "jacobian": 1 / (4 * split(wo)[2] * split(wi)[2])}
+
+    def _F(self, wo, wi):
+        return slot("fresnel", self.slots()["fresnel"]).F(cos_facet(wo, wi), np.array(self.eta), np.array(self.k))
 
     def _sampling(self):
         return slot("sampling", self.ndf, self.sampling)

@@ -1,0 +1,26 @@
+"""Slot fresnel, spectral: copper, main/Cu/Johnson of refractiveindex.info (CC0)."""
+
+import numpy as np
+
+from .spectrum import F_spectral
+
+# fmt: off
+ETA = np.array([
+    1.2748, 1.2422, 1.2424, 1.2492,
+    1.2229, 1.2039, 1.1441, 1.0366,
+    0.8747, 0.7010, 0.4923, 0.2921,
+    0.2663, 0.2280, 0.2147, 0.2144,
+])
+KAPPA = np.array([
+    2.2239, 2.3449, 2.4175, 2.4927,
+    2.5518, 2.5934, 2.6051, 2.5743,
+    2.6339, 2.7035, 2.9624, 3.2215,
+    3.4475, 3.6816, 3.8662, 4.1443,
+])
+# fmt: on
+ERROR = 7.7e-04
+"""The largest error of F against steps of 1 nm, at 0, 1, ... 89 degrees."""
+
+
+def F(c, eta, k):
+    return F_spectral(c, ETA, KAPPA)
