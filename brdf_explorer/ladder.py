@@ -7,7 +7,10 @@ by a line here, a new question by one Ladder in LADDERS.
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from .lib import slot
+from .lib.common import vec
 from .model import Choice, declared
 
 
@@ -21,14 +24,17 @@ def exact(state):
 
 @dataclass(frozen=True)
 class Method:
-    """An answer. changes: the parameters of the ladder's section that choose it; None: in float64 by numpy, not in a shader.
+    """An answer. changes: the parameters of the ladder's section that choose it; None: a state cannot hold it.
 
+    dtype       numbers that hold the value where that is the question: "f2", stored as a half-float by the shader; "f4", the
+                shader's; "f8", numpy's. "": in float64 for errors, by the shader for costs
     outside(state): why the method leaves its domain there, in a few words, or "". own(state): how far it may itself be from the
     truth that it stands for as a reference, relative.
     """
 
     name: str
     changes: dict | None
+    dtype: str = ""
     outside: Callable = within
     own: Callable = exact
 
@@ -38,7 +44,8 @@ class Ladder:
     """A question with its methods, the last of which is the reference, unless it is outside its domain.
 
     section   what the methods change: "material", or the name of a view
-    measures  what a method is judged by: "f", its values; "samples", the spread of its weights; "picture", the sphere's
+    measures  what a method is judged by: "f", its values; "numbers", how they are held; "samples", the spread of its weights;
+              "picture", the sphere's
     applies   whether the question arises for a state
     """
 
@@ -63,7 +70,11 @@ class Ladder:
         """The method that a state uses, or None if it is none of these."""
         at = state.model if self.section == "material" else state.views[self.section]
         return next(
-            (m for m in self.methods if m.changes and all(getattr(at, k, None) == v for k, v in m.changes.items())),
+            (
+                m
+                for m in self.methods
+                if m.changes is not None and all(getattr(at, k, None) == v for k, v in m.changes.items())
+            ),
             None,
         )
 
@@ -76,7 +87,7 @@ def of_choice(name, question, measures, options, applies=None, outside=None, own
         return choice in declared(state.model, Choice) and (applies is None or applies(state.model))
 
     outside, own = outside or {}, own or {}
-    methods = tuple(Method(o, {choice: o}, outside.get(o, within), own.get(o, exact)) for o in options)
+    methods = tuple(Method(o, {choice: o}, "", outside.get(o, within), own.get(o, exact)) for o in options)
     return Ladder(name, question, "material", measures, methods, has)
 
 
@@ -92,9 +103,25 @@ def of_spectrum(state):
     return slot("fresnel", "spectral", state.model.spectrum).ERROR
 
 
+def beyond_half(state):
+    """Whether f has values that half-floats hold as infinite: its peaks are near the mirror's direction."""
+    cosine = np.array([1.0, 0.5, 0.2, 0.1])
+    wo = vec(np.sqrt(1 - cosine**2), 0.0, cosine)
+    largest = state.model.f(wo, wo * [-1, -1, 1]).max()
+    return f"f is up to {largest:.2g}, beyond {HALF:.0f}" if largest > HALF else ""
+
+
+def surrounded(state):
+    return state.light.environment != "none" and state.light.gain > 0
+
+
 def not_of_ggx(state):
     return "visible normals of Beckmann have no caps: the same as visible" if state.model.ndf != "ggx" else ""
 
+
+HALF = float(np.finfo(np.float16).max)
+"""The largest half-float."""
+ESTIMATORS = ("light", "bsdf", "balance")
 
 LADDERS = {
     ladder.name: ladder
@@ -136,6 +163,29 @@ LADDERS = {
             "samples",
             ("uniform", "cosine", "ndf", "visible", "caps", "bounded"),
             outside={"caps": not_of_ggx, "bounded": not_of_ggx},
+        ),
+        Ladder(
+            "environment",
+            "How is the light from all around gathered?",
+            "sphere",
+            "picture",
+            (
+                *(Method(f"{e} {n}", {"estimator": e, "samples": n}) for n in (1, 16, 256) for e in ESTIMATORS),
+                Method("balance 4096", {"estimator": "balance", "samples": 4096}),
+            ),
+            surrounded,
+        ),
+        Ladder(
+            "precision",
+            "How precise must numbers be?",
+            "material",
+            "numbers",
+            (
+                Method("half output", None, "f2", beyond_half),
+                Method("float32", {}, "f4"),
+                Method("float64 numpy", None, "f8"),
+            ),
+            lambda state: not state.model.stochastic,
         ),
     )
 }

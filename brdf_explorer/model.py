@@ -146,6 +146,9 @@ class Model(Declared):
                      a weight of 0 marks a direction below the horizon, which carries no energy
     """
 
+    stochastic = False
+    """True: f returns an unbiased estimate."""
+
     def slots(self):
         """What fills the slots in the paths of its shader, by name: its choices."""
         return self.choices()

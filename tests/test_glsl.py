@@ -185,9 +185,14 @@ def options(slot, pattern):
 
 
 def slots_of(path):
-    """{slot: options} of the slots that an entry has itself, the model's left out."""
-    found = re.findall(r'#include "([^"]*{(\w+)}[^"]*)"', text_of(path))
-    return {slot: options(slot, pattern) for pattern, slot in found if slot != "model"}
+    """{slot: options} of the slots that an entry has, or what fills them, the model's left out."""
+    found = {}
+    for pattern, slot in re.findall(r'#include "([^"]*{(\w+)}[^"]*)"', text_of(path)):
+        if slot != "model":
+            found[slot] = options(slot, pattern)
+            for option in found[slot]:
+                found |= slots_of(pattern.replace(f"{{{slot}}}", option))
+    return found
 
 
 def of_choices(path, cls, dialect):

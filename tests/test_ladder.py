@@ -7,10 +7,10 @@ import pytest
 from brdf_explorer.ladder import LADDERS
 from brdf_explorer.model import declared
 from brdf_explorer.models import MODELS
-from brdf_explorer.state import Material, State
+from brdf_explorer.state import Light, Material, State
 
 STATES = [State((Material("", MODELS["microfacet"](ndf=ndf, k=k)),)) for ndf in ("ggx", "beckmann") for k in (0.0, 3.0)]
-STATES.append(State((Material("", MODELS["diffuse"]()),)))
+STATES.append(State((Material("", MODELS["diffuse"]()),), light=Light(environment="studio")))
 
 
 @pytest.mark.parametrize("ladder", LADDERS.values(), ids=LADDERS)

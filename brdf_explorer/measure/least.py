@@ -152,7 +152,7 @@ def questions(state, metric="picture", ladders=LADDERS):
         if not ladder.applies(state):
             untried.append((ladder.name, "does not apply"))
             continue
-        left_out = [(m.name, "no shader" if m.changes is None else m.outside(state)) for m in ladder.methods]
+        left_out = [(m.name, "no state holds it" if m.changes is None else m.outside(state)) for m in ladder.methods]
         methods = tuple(m for m, (_, why) in zip(ladder.methods, left_out, strict=True) if not why)
         if noise and metric != "picture":
             untried.append((ladder.name, f"{METRICS[metric].title} is not split into bias and noise"))

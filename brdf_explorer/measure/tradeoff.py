@@ -2,20 +2,21 @@
 
 import os
 import platform
+import time
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..ladder import Ladder, Method
-from ..model import Invalid
+from ..ladder import HALF, Ladder, Method
+from ..model import Invalid, Model
 from . import cost
 from .cost import Cost
 from .error import METRICS, RAYS, ROUNDING, Measured, Values, values
 from .laws import viewers
 
-NATURAL = {"f": "rmse", "samples": "spread", "picture": "picture"}
+NATURAL = {"f": "rmse", "numbers": "rmse", "samples": "spread", "picture": "picture"}
 """The metric by which a ladder is judged if no other is asked for, by what it measures."""
-JUDGED = {"f": ("values", "pictures"), "samples": ("samples",), "picture": ("pictures",)}
+JUDGED = {"f": ("values", "pictures"), "numbers": ("values",), "samples": ("samples",), "picture": ("pictures",)}
 """What its metrics can compare."""
 SAMPLED = (256, 256)
 """Pixels of a timed draw of samples, which may cost ten times an evaluation."""
@@ -23,6 +24,8 @@ SIDE = 96
 """Pixels along each side of the spheres that errors of pictures are measured on."""
 PASSES = 64
 """Passes of each, under an environment, if the methods do not differ in them."""
+FIRST = 0.7
+"""Seconds after which costs come before the rest of the errors."""
 KEPT = 200
 """Measurements of errors that are kept."""
 
@@ -114,36 +117,41 @@ def tradeoffs(gpu, ladder, state, metric="own", kind="evaluation", size=cost.SIZ
     """Yield the Tradeoff of a ladder for a state, from the first points to the best; each step takes some milliseconds.
 
     metric: a name of METRICS, or "own" for the ladder's; kind: "evaluation", or "frame" for the sphere in a picture of `size`;
-    ladders of samples have the cost of a sample, those of pictures that of a frame. What was measured before is not again.
+    ladders of samples have the cost of a sample, of pictures that of a frame, of numbers that of an evaluation. What was
+    measured before is not again.
     """
     metric = NATURAL[ladder.measures] if metric == "own" else metric
-    kind = {"samples": "sample", "picture": "frame"}.get(ladder.measures, kind)
+    kind = {"samples": "sample", "picture": "frame", "numbers": "evaluation"}.get(ladder.measures, kind)
     timed = {"evaluation": cost.SIZE, "sample": SAMPLED, "frame": size}[kind]
     found = Tradeoff(ladder, metric, kind, timed)
     reason = senseless(ladder, state, metric)
     if reason:
         yield replace(found, reason=reason)
         return
-    points = {m.name: Point(m, ladder.at(state, m) if m.changes else None, m.outside(state)) for m in ladder.methods}
+    points = {
+        m.name: Point(m, ladder.at(state, m) if m.changes is not None else None, m.outside(state))
+        for m in ladder.methods
+    }
     found = replace(found, points=tuple(points.values()), reference=ladder.reference(state).name)
 
     def with_points(doing, **changes):
         return replace(found, points=tuple(points.values()), doing=doing, **changes)
 
     try:
+        start = time.perf_counter()
         errors, measuring = {}, kept_errors(gpu, ladder, state, metric)
         for errors in measuring:
             points |= {name: replace(points[name], error=e) for name, e in errors.items()}
-            if len(errors) == len(points):
+            if len(errors) == len(points) or errors and time.perf_counter() - start > FIRST:
                 break  # rough or not: times come next, and then the rest
             yield with_points(f"error of {len(errors)} of {len(points)} methods")
         for samples in cost.costs(gpu, works(gpu, ladder, state, kind, timed)):
             points |= {name: replace(points[name], cost=cost.summary(s)) for name, s in samples.items()}
             repeats = f", {len(next(iter(samples.values())))} repeats" if samples else ""
-            yield with_points(f"cost{repeats}", own=errors[found.reference])
+            yield with_points(f"cost{repeats}", own=errors.get(found.reference))
         for errors in measuring:
             points |= {name: replace(points[name], error=e) for name, e in errors.items()}
-            yield with_points("error of the reference", own=errors[found.reference])
+            yield with_points("errors", own=errors.get(found.reference))
         yield with_points("", own=errors[found.reference])
     except Senseless as error:
         yield replace(found, points=(), reason=str(error))
@@ -155,7 +163,12 @@ def senseless(ladder, state, metric):
         return "The question does not arise for this material in this light."
     if METRICS[metric].compares in JUDGED[ladder.measures]:
         return ""
-    about = {"f": "the values of f", "samples": "how samples are drawn", "picture": "how the picture is made"}
+    about = {
+        "f": "the values of f",
+        "numbers": "how numbers are held",
+        "samples": "how samples are drawn",
+        "picture": "how the picture is made",
+    }
     others = [name for name, m in METRICS.items() if m.compares in JUDGED[ladder.measures]]
     return (
         f"Its methods differ in {about[ladder.measures]}: {metric} is no error of theirs. Choose {' or '.join(others)}."
@@ -198,17 +211,21 @@ def ladder_report(found, tolerance):
 
 def works(gpu, ladder, state, kind, size):
     """{name of a method: its Work}."""
-    bare = None if kind == "frame" else cost.fill(gpu, size)
+    bare = {}
+    if kind != "frame":
+        bare = {dtype: cost.fill(gpu, size, dtype) for dtype in {m.dtype or "f4" for m in ladder.methods} - {"f8"}}
     found = {}
     for method in ladder.methods:
-        at = ladder.at(state, method)
+        at, dtype = ladder.at(state, method), method.dtype or "f4"
         if kind == "frame":
             work = cost.one_pass(gpu, at, size)
             found[method.name] = replace(work, count=1 / (method.changes or {}).get("samples", 1))
         elif kind == "sample":
-            found[method.name] = cost.sample(gpu, at.model, bare, size)
+            found[method.name] = cost.sample(gpu, at.model, bare[dtype], size)
+        elif dtype == "f8":
+            found[method.name] = cost.in_numpy(at.model)
         else:
-            found[method.name] = cost.evaluation(gpu, at.model, bare, size)
+            found[method.name] = cost.evaluation(gpu, at.model, bare[dtype], size, dtype)
     return found
 
 
@@ -240,21 +257,41 @@ def kept_errors(gpu, ladder, state, metric):
 
 
 def value_errors(gpu, ladder, state, metric):
-    """By quadrature in float64; the own error is the change from half the rays."""
+    """By quadrature in float64; the own error is the change from half the rays and what the reference is known to."""
     reference = ladder.reference(state)
     alpha = ladder.at(state, reference).model.slopes()
+    own = reference.own(state)
     tables, found = {}, {}
     for method in (reference, *ladder.methods):
         if method.name not in tables:
             parts = {n: [] for n in (RAYS // 2, RAYS)}
             for n, of_rays in parts.items():
                 for wo in viewers():
-                    of_rays.append(values(ladder.at(state, method).model, alpha, n, wo[None]))
+                    of_rays.append(values(evaluator(gpu, ladder.at(state, method).model, method), alpha, n, wo[None]))
                     yield found
             tables[method.name] = [joined(of_rays) for of_rays in parts.values()]
         coarse, fine = map(metric.function, tables[method.name], tables[reference.name])
-        found = found | {method.name: Measured(fine, abs(fine - coarse) + ROUNDING)}
+        found = found | {method.name: Measured(fine, abs(fine - coarse) + own + ROUNDING)}
         yield found
+
+
+@dataclass(frozen=True)
+class Shader:
+    """f of a material by the shader, in float32 or stored as half-floats, of which the largest stands for what is beyond."""
+
+    gpu: object
+    model: Model
+    dtype: str
+
+    def f(self, wo, wi):
+        found = self.gpu.f(self.model, wo, wi)
+        with np.errstate(under="ignore"):
+            return np.minimum(found, HALF).astype(np.float16) if self.dtype == "f2" else found
+
+
+def evaluator(gpu, model, method):
+    """What evaluates f of a model by a method."""
+    return Shader(gpu, model, method.dtype) if method.dtype in ("f2", "f4") else model
 
 
 def joined(parts):

@@ -24,6 +24,11 @@ class Sphere(View):
     formulas: str = choice(
         "stable", ("stable", "textbook"), "as we rearranged them for float32, or as they are printed"
     )
+    estimator: str = choice(
+        "balance",
+        ("balance", "bsdf", "light"),
+        "where directions to the environment come from: the material's sampler, the map's, or both weighed against each other",
+    )
     samples: int = param(1024, 1, 65536, "most samples a pixel", scale="log")
     noise: float = param(0.01, 1e-6, 0.1, "standard error of a pixel, over the mean, that ends sampling", scale="log")
 
@@ -46,7 +51,8 @@ class Sphere(View):
             uniforms |= {"turn": turn(light), "gain": light.gain}
             textures = environment_textures(gpu, light)
         lighting = "both" if len(lights) == 2 else lights[0] if lights else "dark"
-        fragment = of_model("views/sphere.frag", state.model, slots={"lighting": lighting}, formulas=self.formulas)
+        slots = {"lighting": lighting, "estimator": self.estimator}
+        fragment = of_model("views/sphere.frag", state.model, slots=slots, formulas=self.formulas)
         program = gpu.program(fragment, assemble("views/disc.vert"))
         width, height = map(float, size)
         uniforms |= {"size": (width, height), "center": (width / 2, height / 2), "radius": self.radius(size)}
