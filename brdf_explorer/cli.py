@@ -512,7 +512,7 @@ def print_tradeoff(one):
         )
     heads = (
         "method",
-        f"cost of a {one['cost']['of']}",
+        f"cost of a{'n' * (one['cost']['of'] == 'evaluation')} {one['cost']['of']}",
         "quartiles",
         "repeats",
         one["metric"]["name"],

@@ -12,12 +12,16 @@ from click.testing import CliRunner
 from PIL import ImageFont
 
 from brdf_explorer.cli import main
+from brdf_explorer.environment import environment, turn
 from brdf_explorer.export import embedded
 from brdf_explorer.ladder import LADDERS, Ladder, Method
-from brdf_explorer.lib.common import split
+from brdf_explorer.lib.common import normalize, quotient, split
+from brdf_explorer.lib.environment import environment_lookup, sample_environment
+from brdf_explorer.lib.random import STREAM_BSDF, STREAM_LIGHT, random2
 from brdf_explorer.measure import tradeoff
 from brdf_explorer.measure.cost import Cost
 from brdf_explorer.measure.error import METRICS, Measured, picture_rmse
+from brdf_explorer.measure.grid import direction
 from brdf_explorer.measure.laws import viewers
 from brdf_explorer.measure.tradeoff import Point, Tradeoff, kept_errors, tradeoffs
 from brdf_explorer.model import Declared
@@ -88,27 +92,33 @@ def test_spread_of_samples_is_that_of_drawn_weights(gpu, sampling):
     assert errors[sampling].value ** 2 == pytest.approx(expected, abs=5 * sigma)
 
 
+def pixels_of_sphere(state, n, jitter=0.0):
+    """Coverage (pixels, 1) of a sphere in a picture of n x n pixels, where there is some; wo and the frame there, as shaded."""
+    radius = state.views["sphere"].radius((n, n))
+    y, x = np.mgrid[:n, :n] + 0.5 - n / 2
+    coverage = np.clip(radius + 0.5 - np.hypot(x, y), 0, 1)
+    edge, seen = 1 - 0.5 / radius, coverage > 0
+    p = np.stack([x[seen], y[seen]], axis=-1)
+    p = (p + jitter) / radius
+    p = p * np.minimum(edge / np.maximum(np.hypot(*split(p)), edge), 1.0)[:, None]
+    normal = np.concatenate([p, np.sqrt(1 - (p**2).sum(-1, keepdims=True))], axis=-1)
+    tangent = normalize(np.stack([normal[:, 2], 0 * normal[:, 0], -normal[:, 0]], axis=-1))
+    frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=-2)
+    return coverage[seen][:, None], frame @ [0.0, 0.0, 1.0], frame
+
+
 def test_errors_of_pictures_are_those_of_f_under_one_light(gpu):
     """The sphere of 32 pixels shaded by float64 f, pass by pass at the places where the shader's rays go."""
     state = State(light=Light(theta=60.0, phi=20.0)).with_model(MICROFACET(alpha=0.5))
     errors = last(kept_errors(gpu, LADDERS["shadowing"], state, "picture"))
-    n, radius = 32, state.views["sphere"].radius((32, 32))
-    y, x = np.mgrid[:n, :n] + 0.5 - n / 2
-    coverage = np.clip(radius + 0.5 - np.hypot(x, y), 0, 1)[..., None]
-    edge = 1 - 0.5 / radius
 
     def shaded(method):
         model, color = LADDERS["shadowing"].at(state, method).model, 0.0
         for i in range(SMOOTH):
-            p = (np.stack([x, y], axis=-1) + (R2 * i + 0.5) % 1.0 - 0.5) / radius
-            p = p * np.minimum(edge / np.maximum(np.hypot(*split(p)), edge), 1.0)[..., None]
-            normal = np.concatenate([p, np.sqrt(1 - (p**2).sum(-1, keepdims=True))], axis=-1)
-            tangent = np.stack([normal[..., 2], 0 * x, -normal[..., 0]], axis=-1)
-            tangent /= np.linalg.norm(tangent, axis=-1, keepdims=True)
-            frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=-2)
+            coverage, wo, frame = pixels_of_sphere(state, 32, (R2 * i + 0.5) % 1.0 - 0.5)
             wi = frame @ toward(state.light)
-            color += model.f(frame @ [0.0, 0.0, 1.0], wi) * np.maximum(wi[..., 2:], 0)
-        return np.concatenate([coverage * color, coverage], axis=-1)
+            color += model.f(wo, wi) * np.maximum(wi[:, 2:], 0)
+        return np.concatenate([coverage * color, coverage], axis=-1)[None]
 
     reference = shaded(LADDERS["shadowing"].reference(state))
     for method in LADDERS["shadowing"].methods:
@@ -116,11 +126,81 @@ def test_errors_of_pictures_are_those_of_f_under_one_light(gpu):
         assert errors[method.name].value == pytest.approx(expected, rel=1e-3, abs=1e-7)
 
 
+@np.errstate(under="ignore")
+def estimates(state, estimator, wo, frame, of_bsdf, of_light):
+    """Radiance (places, n, 3) by one pass each, in float64, from random numbers (places, n, 2)."""
+    found, rotation = environment(state.light.environment), np.reshape(turn(state.light), (3, 3))
+    wo = np.broadcast_to(wo[:, None], (*of_bsdf.shape[:2], 3))
+    total = 0.0
+    if estimator != "light":
+        wi, weight = state.model.sample_f(wo, of_bsdf)
+        seen = environment_lookup(found.map, np.einsum("pni,pic->pnc", wi, frame) @ rotation)
+        own = state.model.pdf(wo, wi)
+        share = quotient(own, own + seen[..., 3]) if estimator == "balance" else np.ones_like(own)
+        total = total + weight * seen[..., :3] * np.where(wi[..., 2] > 0, share, 0.0)[..., None]
+    if estimator != "bsdf":
+        world, density = sample_environment(found.map, found.cdf, of_light)
+        wi = np.einsum("pnc,pic->pni", world @ rotation.T, frame)
+        density = density + (state.model.pdf(wo, wi) if estimator == "balance" else 0.0)
+        light = environment_lookup(found.map, world)[..., :3]
+        total = total + state.model.f(wo, wi) * light * (np.maximum(wi[..., 2], 0.0) / density)[..., None]
+    return total
+
+
+def test_errors_of_estimators_are_those_in_float64(gpu):
+    """With the shaders' numbers of other pixels, against many passes with numpy's own numbers."""
+    errors = last(kept_errors(gpu, LADDERS["environment"], GOLD, "picture"))
+    coverage, wo, frame = pixels_of_sphere(GOLD, 32)
+    n = len(wo)
+    many = np.random.default_rng(7).integers(0, 2**24, (2, n, 512, 2)) / 2**24
+    true = estimates(GOLD, "balance", wo, frame, *many).mean(axis=1) * coverage
+    wi = frame @ toward(GOLD.light)
+    direct = GOLD.model.f(wo, wi) * np.maximum(wi[:, 2:], 0) * GOLD.light.irradiance * coverage
+    level = (true + direct).mean()
+    for passes in (1, 16):
+        pixel = np.stack([np.arange(n) + 9000, np.full(n, 77)], axis=-1)[:, None].repeat(passes, axis=1)
+        few = [random2(pixel, np.arange(passes), stream) for stream in (STREAM_BSDF, STREAM_LIGHT)]
+        for estimator in ("light", "bsdf", "balance"):
+            own = estimates(GOLD, estimator, wo, frame, *few).mean(axis=1) * coverage
+            squares = np.mean((own - true) ** 2, axis=-1) / level**2
+            sigma = np.sqrt(2 / n) * squares.std()  # the picture errs as much
+            assert errors[f"{estimator} {passes}"].value ** 2 == pytest.approx(squares.mean(), abs=5 * sigma)
+    own = errors["balance 4096"]
+    assert own.value == pytest.approx(0, abs=1e-12) and own.error < errors["balance 256"].value / 3
+
+
+def test_errors_of_half_floats_are_those_of_rounding(gpu):
+    """A number whose logarithm is anywhere, rounded to 11 bits, is off by 2^-10 / sqrt(12) times the mean of 1 / m^2's root."""
+    errors = last(kept_errors(gpu, LADDERS["precision"], GOLD, "rmse"))
+    mean = (1 - 1 / 4) / (2 * np.log(2))  # of 1 / m^2, m between 1 and 2
+    assert errors["half output"].value == pytest.approx(2.0**-10 * np.sqrt(mean / 12), rel=0.1)
+
+
+def test_errors_of_float32_are_those_of_random_directions(gpu):
+    errors = last(kept_errors(gpu, LADDERS["precision"], GOLD, "rmse"))
+    rng, n, squares, sigmas = np.random.default_rng(3), 50_000, [], []
+    wi = direction(np.arccos(rng.random(n)), rng.uniform(0, 2 * np.pi, n))
+    for wo in viewers():
+        a, b = (f.f(GOLD.model, wo, wi) if f is gpu else f.f(wo, wi) for f in (gpu, GOLD.model))
+        square, whole = (((v * wi[:, 2:]) ** 2).sum(axis=-1) for v in (a - b, b))
+        squares.append(square.mean() / whole.mean())
+        sigmas.append((square - squares[-1] * whole).std() / whole.mean() / np.sqrt(n))
+    sigma = np.hypot.reduce(sigmas) / len(sigmas)
+    assert errors["float32"].value ** 2 == pytest.approx(np.mean(squares), abs=5 * sigma)
+
+
+def test_what_half_floats_cannot_hold_is_told():
+    ladder = LADDERS["precision"]
+    for alpha, words in ((0.3, ""), (1e-4, "beyond 65504")):
+        assert words in ladder.methods[0].outside(GOLD.with_model(replace(GOLD.model, alpha=alpha)))
+
+
 def test_metrics_that_make_no_sense_are_told(gpu):
     for name, state, metric in (
         ("sampling", GOLD, "rmse"),
         ("shadowing", GOLD, "spread"),
         ("smith", GOLD, "rmse"),
+        ("precision", GOLD, "picture"),
         ("diffuse", GOLD, "own"),
     ):
         found = last(tradeoffs(gpu, LADDERS[name], state, metric))
