@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import time
 from collections import deque
 from dataclasses import dataclass
 
@@ -9,12 +10,16 @@ import numpy as np
 
 from .glsl import assemble, of_model
 from .gpu import offscreen
+from .ladder import LADDERS
+from .measure import cost
 from .measure.cost import interleaved
 from .measure.estimator import Runs, moments, samplers, slope
 from .measure.grid import direction
-from .state import State
+from .measure.tradeoff import tradeoffs, works
+from .state import State, load
 
 SIZE = (1024, 1024)
+SMALL = (256, 256)
 WINDOW = (676, 210)  # the size at which the best known peer's lobe was timed
 BARE = "import numpy, imgui_bundle, moderngl; moderngl.create_context(standalone=True, require=330{backend})"
 PICTURE = """
@@ -69,11 +74,42 @@ def figure(name, samples, unit="", limit=None):
 
 
 def report(repeats=31, processes=5):
-    """Figures, as they are measured: of drawing, then of starting."""
+    """Figures, as they are measured: of the chart, of drawing, then of starting."""
     with offscreen() as gpu:
+        yield from charting(gpu)
         yield from drawing(gpu, repeats)
     yield from sampling(State().model)
     yield from starting(processes)
+
+
+def charting(gpu, runs=5):
+    """Seconds to the first point of each question that arises for gold and to all of them, and how ratios of costs repeat."""
+    state = load("gold", load("studio"))
+    ladders = [ladder for ladder in LADDERS.values() if ladder.applies(state)]
+    firsts, begun = {}, time.perf_counter()
+    for ladder in ladders:
+        start = time.perf_counter()
+        for found in tradeoffs(gpu, ladder, state):
+            if any(p.known for p in found.points):
+                firsts.setdefault(ladder.name, time.perf_counter() - start)
+    whole = time.perf_counter() - begun
+    slowest = max(firsts, key=firsts.get)
+    yield figure(f"first points of a chart; the slowest: {slowest}", firsts[slowest], "s", limit=2)
+    yield figure(f"chart of all questions for gold: {', '.join(firsts)}", whole, "s", limit=180)
+    spreads = {}
+    for ladder in ladders:
+        kind, size = ("frame", SMALL) if ladder.measures == "picture" else ("evaluation", cost.SIZE)
+        kind = "sample" if ladder.measures == "samples" else kind
+        medians = []
+        for _ in range(runs):
+            gpu.costs.clear()
+            (times,) = deque(cost.costs(gpu, works(gpu, ladder, state, kind, size)), 1)
+            medians.append([np.median(seconds) for seconds in times.values()])
+        ratios = np.array(medians) / np.array(medians)[:, -1:]
+        spreads[ladder.name] = np.max(np.ptp(ratios, axis=0) / np.median(ratios, axis=0))
+    worst = max(spreads, key=spreads.get)
+    name = f"ratios of methods' costs, over {runs} charts, largest less smallest; the worst: {worst}"
+    yield figure(name, 100 * spreads[worst], "%", limit=10)
 
 
 def drawing(gpu, repeats):

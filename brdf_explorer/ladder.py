@@ -121,7 +121,7 @@ def not_of_ggx(state):
 
 HALF = float(np.finfo(np.float16).max)
 """The largest half-float."""
-ESTIMATORS = ("light", "bsdf", "balance")
+ESTIMATORS = {"light": "light", "bsdf": "BSDF", "mis": "MIS"}
 
 LADDERS = {
     ladder.name: ladder
@@ -170,8 +170,12 @@ LADDERS = {
             "sphere",
             "picture",
             (
-                *(Method(f"{e} {n}", {"estimator": e, "samples": n}) for n in (1, 16, 256) for e in ESTIMATORS),
-                Method("balance 4096", {"estimator": "balance", "samples": 4096}),
+                *(
+                    Method(f"{name} {n}", {"estimator": estimator, "samples": n})
+                    for n in (1, 16, 256)
+                    for estimator, name in ESTIMATORS.items()
+                ),
+                Method("MIS 4096", {"estimator": "mis", "samples": 4096}),
             ),
             surrounded,
         ),

@@ -14,7 +14,7 @@ from PIL import ImageFont
 from brdf_explorer.cli import main
 from brdf_explorer.environment import environment, turn
 from brdf_explorer.export import embedded
-from brdf_explorer.ladder import LADDERS, Ladder, Method
+from brdf_explorer.ladder import ESTIMATORS, LADDERS, Ladder, Method
 from brdf_explorer.lib.common import normalize, quotient, split
 from brdf_explorer.lib.environment import environment_lookup, sample_environment
 from brdf_explorer.lib.random import STREAM_BSDF, STREAM_LIGHT, random2
@@ -136,12 +136,12 @@ def estimates(state, estimator, wo, frame, of_bsdf, of_light):
         wi, weight = state.model.sample_f(wo, of_bsdf)
         seen = environment_lookup(found.map, np.einsum("pni,pic->pnc", wi, frame) @ rotation)
         own = state.model.pdf(wo, wi)
-        share = quotient(own, own + seen[..., 3]) if estimator == "balance" else np.ones_like(own)
+        share = quotient(own, own + seen[..., 3]) if estimator == "mis" else np.ones_like(own)
         total = total + weight * seen[..., :3] * np.where(wi[..., 2] > 0, share, 0.0)[..., None]
     if estimator != "bsdf":
         world, density = sample_environment(found.map, found.cdf, of_light)
         wi = np.einsum("pnc,pic->pni", world @ rotation.T, frame)
-        density = density + (state.model.pdf(wo, wi) if estimator == "balance" else 0.0)
+        density = density + (state.model.pdf(wo, wi) if estimator == "mis" else 0.0)
         light = environment_lookup(found.map, world)[..., :3]
         total = total + state.model.f(wo, wi) * light * (np.maximum(wi[..., 2], 0.0) / density)[..., None]
     return total
@@ -153,20 +153,22 @@ def test_errors_of_estimators_are_those_in_float64(gpu):
     coverage, wo, frame = pixels_of_sphere(GOLD, 32)
     n = len(wo)
     many = np.random.default_rng(7).integers(0, 2**24, (2, n, 512, 2)) / 2**24
-    true = estimates(GOLD, "balance", wo, frame, *many).mean(axis=1) * coverage
+    true = estimates(GOLD, "mis", wo, frame, *many).mean(axis=1) * coverage
     wi = frame @ toward(GOLD.light)
     direct = GOLD.model.f(wo, wi) * np.maximum(wi[:, 2:], 0) * GOLD.light.irradiance * coverage
     level = (true + direct).mean()
     for passes in (1, 16):
         pixel = np.stack([np.arange(n) + 9000, np.full(n, 77)], axis=-1)[:, None].repeat(passes, axis=1)
         few = [random2(pixel, np.arange(passes), stream) for stream in (STREAM_BSDF, STREAM_LIGHT)]
-        for estimator in ("light", "bsdf", "balance"):
+        for estimator in ESTIMATORS:
             own = estimates(GOLD, estimator, wo, frame, *few).mean(axis=1) * coverage
             squares = np.mean((own - true) ** 2, axis=-1) / level**2
             sigma = np.sqrt(2 / n) * squares.std()  # the picture errs as much
-            assert errors[f"{estimator} {passes}"].value ** 2 == pytest.approx(squares.mean(), abs=5 * sigma)
-    own = errors["balance 4096"]
-    assert own.value == pytest.approx(0, abs=1e-12) and own.error < errors["balance 256"].value / 3
+            assert errors[f"{ESTIMATORS[estimator]} {passes}"].value ** 2 == pytest.approx(
+                squares.mean(), abs=5 * sigma
+            )
+    own = errors["MIS 4096"]
+    assert own.value == pytest.approx(0, abs=1e-12) and own.error < errors["MIS 256"].value / 3
 
 
 def test_errors_of_half_floats_are_those_of_rounding(gpu):

@@ -194,7 +194,9 @@ class Chart(Drawn):
         draw.over()
         if dashed:
             told = f"within {self.tolerance:g}: {best.name if best else 'none'}"
-            label(draw, blocked, told, [(right - 4 * s, line + d * s, 1.0) for d in (9, -9)], "green", 11.5)
+            spots_told = ((right - 4 * s, 1.0), (left + 4 * s, 0.0), ((left + right) / 2, 0.5))
+            places = [(at, line + d * s, anchor) for at, anchor in spots_told for d in (9, -9)]
+            label(draw, blocked, told, places, "green", 11.5)
         # names: those that matter most first
         for p in sorted(known, key=lambda p: (p is not best, p.method is not current, bool(p.outside))):
             at = spots[p.name]

@@ -25,9 +25,9 @@ class Sphere(View):
         "stable", ("stable", "textbook"), "as we rearranged them for float32, or as they are printed"
     )
     estimator: str = choice(
-        "balance",
-        ("balance", "bsdf", "light"),
-        "where directions to the environment come from: the material's sampler, the map's, or both weighed against each other",
+        "mis",
+        ("mis", "bsdf", "light"),
+        "where directions to the environment come from: the material's sampler, the map's, or both by multiple importance",
     )
     samples: int = param(1024, 1, 65536, "most samples a pixel", scale="log")
     noise: float = param(0.01, 1e-6, 0.1, "standard error of a pixel, over the mean, that ends sampling", scale="log")
