@@ -23,7 +23,8 @@ MARK = 10  # diameter of a mark, points
 STRIP = 30  # height of the strip of exact methods, points
 SMALL = 10.5  # height of small print, points
 REDRAWN = 0.1  # seconds from one drawing to the next while measuring goes on
-ROOM = (420, 300)  # points that a chart of several takes at least
+NARROW = 300  # points that each of several charts side by side takes at least
+SHAPE = 1.4  # width over height that suits a chart
 
 
 @dataclass(frozen=True)
@@ -84,10 +85,7 @@ class Chart(Drawn):
         for i, words in enumerate(lines):
             draw.text(words, (12 * scale, foot - (6 + 14 * i) * scale), "muted", (0.0, 0.5), SMALL)
         total = len(self.ladders(state))
-        columns = min(max(int(width / (ROOM[0] * scale)), 1), total) if total else 1
-        if total == 4:
-            columns = min(columns, 2)
-        rows = -(-total // columns)
+        columns, rows = layout(total, width, height - foot, NARROW * scale)
         for i, tradeoff in enumerate(found):
             row, column = divmod(i, columns)
             left, top = column * width / columns, height - row * (height - foot) / rows
@@ -221,6 +219,16 @@ class Chart(Drawn):
         if p.outside:
             lines.append(f"outside its domain: {p.outside}")
         return "\n".join(lines)
+
+
+def layout(total, width, height, least):
+    """Columns and rows of `total` boxes, of a shape as near to SHAPE as they can be; several columns are at least `least` wide."""
+
+    def away(columns):
+        return abs(np.log(width / columns / (max(height, 1) / -(-total // columns)) / SHAPE))
+
+    columns = min(range(1, min(max(int(width / least), 1), max(total, 1)) + 1), key=away)
+    return columns, -(-total // columns)
 
 
 class Blocked:
