@@ -222,7 +222,7 @@ class Chart(Drawn):
 
 
 def layout(total, width, height, least):
-    """Columns and rows of `total` boxes, of a shape as near to SHAPE as they can be; several columns are at least `least` wide."""
+    """Columns and rows of `total` boxes of a shape near to SHAPE; several columns are at least `least` wide."""
 
     def away(columns):
         return abs(np.log(width / columns / (max(height, 1) / -(-total // columns)) / SHAPE))
@@ -235,10 +235,15 @@ class Blocked:
     """Boxes that no further label may meet, within one that it may not leave; left, bottom, right, top in pixels."""
 
     def __init__(self, inside):
-        self.inside, self.boxes = inside, []
+        self.inside, self.boxes, self.words = inside, [], []
 
     def add(self, box):
         self.boxes.append(box)
+
+    def over_words(self, start, end):
+        """Whether a straight line meets a label."""
+        along = start + np.linspace(0, 1, 17)[:, None] * (end - start)
+        return any(np.any(np.all((along > box[:2]) & (along < box[2:]), axis=1)) for box in self.words)
 
     def free(self, box):
         left, bottom, right, top = box
@@ -264,12 +269,12 @@ def label(draw, blocked, words, places, color, size, mark=None):
     for x, y, anchor in places:
         left = x - anchor * width
         box = (left, y - height / 2, left + width, y + height / 2)
-        if blocked.free(box):
-            if mark is not None:
-                near = np.clip(mark, box[:2], box[2:])
-                if np.linalg.norm(near - mark) > 20 * s:
-                    draw.stroke([mark + (near - mark) * 0.35, near], "muted", 0.8)
+        near = None if mark is None else np.clip(mark, box[:2], box[2:])
+        if blocked.free(box) and (mark is None or not blocked.over_words(mark, near)):
+            if mark is not None and np.linalg.norm(near - mark) > 20 * s:
+                draw.stroke([mark + (near - mark) * 0.35, near], "muted", 0.8)
             blocked.add(box)
+            blocked.words.append(box)
             draw.text(words, (x, y), color, (anchor, 0.5), size)
             return box
     return None
