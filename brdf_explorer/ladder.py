@@ -13,6 +13,9 @@ from .lib import slot
 from .lib.common import vec
 from .model import Choice, declared
 
+HALF = float(np.finfo(np.float16).max)
+"""The largest half-float."""
+
 
 def within(state):
     return ""
@@ -24,12 +27,13 @@ def exact(state):
 
 @dataclass(frozen=True)
 class Method:
-    """An answer. changes: the parameters of the ladder's section that choose it; None: a state cannot hold it.
+    """An answer.
 
-    dtype       numbers that hold the value where that is the question: "f2", stored as a half-float by the shader; "f4", the
-                shader's; "f8", numpy's. "": in float64 for errors, by the shader for costs
-    outside(state): why the method leaves its domain there, in a few words, or "". own(state): how far it may itself be from the
-    truth that it stands for as a reference, relative.
+    changes   the parameters of the ladder's section that choose it; None: no state holds it
+    dtype     of what numbers are its values where that is the question: "f2", stored as half-floats by the shader; "f4", the
+              shader's; "f8", numpy's; else "": errors are found in float64 and costs by the shader
+    outside   outside(state): why it leaves its domain there, in a few words, or ""
+    own       own(state): how far it may be, relative, from the truth that it stands for as a reference
     """
 
     name: str
@@ -119,9 +123,8 @@ def not_of_ggx(state):
     return "visible normals of Beckmann have no caps: the same as visible" if state.model.ndf != "ggx" else ""
 
 
-HALF = float(np.finfo(np.float16).max)
-"""The largest half-float."""
 ESTIMATORS = {"light": "light", "bsdf": "BSDF", "mis": "MIS"}
+"""The sphere's ways of gathering light, from the cheapest, and the names that they have here."""
 
 LADDERS = {
     ladder.name: ladder

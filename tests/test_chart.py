@@ -316,6 +316,14 @@ def test_every_mark_is_a_link_to_its_method(gpu):
         assert all("ns an evaluation, quartiles" in k.tip and "±" in k.tip for k in mine)
 
 
+def test_marks_that_no_state_holds_say_so(gpu):
+    state = GOLD.with_view("chart", ladder="precision")
+    links = last(state.views["chart"].pictures(gpu, state, (800, 600))).links
+    for method in LADDERS["precision"].methods:
+        for k in (k for k in links if k.tip.startswith(method.name)):
+            assert (k.state is None) == (method.name != "float32") == ("only measured" in k.tip)
+
+
 def test_marks_outside_their_domain_are_hollow(gpu):
     state = GOLD.with_view("chart", ladder="fresnel")
     picture = last(state.views["chart"].pictures(gpu, state, (800, 600)))

@@ -218,6 +218,8 @@ class Chart(Drawn):
             lines.append(f"cost × error²: {number(per * effort(p))} {unit}")
         if p.outside:
             lines.append(f"outside its domain: {p.outside}")
+        if p.state is None:
+            lines.append("only measured: what is on screen is drawn in float32")
         return "\n".join(lines)
 
 
