@@ -1,4 +1,4 @@
-"""The readings of the lecture's formulas: what each costs, by literal formulas, drawn directions, walks and surfaces; the view."""
+"""The readings of the lecture's formulas: their costs by literal formulas, drawn directions, walks and surfaces; the view."""
 
 from collections import deque
 

@@ -18,8 +18,8 @@ MARGIN = 14  # points
 WIDE = 620  # points from which words and curves stand side by side
 COLUMN = 0.5  # share of a wide picture that the words have
 LOW = {True: 330, False: 520}  # points, by whether it is wide, below which a picture has its words in few lines
-LEAST_PLOT = (150, 70)  # points of the frame of the curves, below which they are left out
-AROUND = (56, 44, 20, 42)  # points from that frame to the ends of its part: left, below, right, above
+LEAST_PLOT = (150, 60)  # points of the frame of the curves, below which they are left out
+AROUND = (56, 42, 20, 40)  # points from that frame to the ends of its part: left, below, right, above
 NUMBER = 60  # points of a column of numbers
 FACTOR = 330  # points of a table from which it has their quotient too
 STYLE = {"printed": ("red", "as printed"), "right": ("blue", "right")}
@@ -91,11 +91,11 @@ WORDS = {
     ),
     "fourier": Words(
         "Eq. 27",
-        "Lambertian Generalizations: d'Eon 2021, Eq. 27",
-        ("first-order mode f(1) of Eq. 27:", "f = f(0) + f(1) cos φ + f(2) cos 2φ"),
+        "Lambertian Generalizations",
+        ("the first-order mode f(1) is Eq. 27", "f = f(0) + f(1) cos φ + f(2) cos 2φ"),
         ("f = f(0) + 2 f(1) cos φ + 2 f(2) cos 2φ",),
-        "Eq. 27 is a Fourier coefficient, the mean of f cos φ over φ. As cos² φ has the mean 1/2, modes from the first on count "
-        "twice. The albedo is the same in both readings.",
+        "Eq. 27 of d'Eon 2021 is a Fourier coefficient, the mean of f cos φ over φ. As cos² φ has the mean 1/2, modes from the "
+        "first on count twice. The albedo is the same in both readings.",
         {},
     ),
     "slab": Words(
@@ -152,8 +152,11 @@ class Readings(Drawn):
             plot(draw, (COLUMN * width, 0.0, width, top), f)
             return
         column = Column(draw, MARGIN, width - MARGIN, top)
-        foot = max(LEAST_PLOT[1] + AROUND[1] + AROUND[3], height / 3)
-        if top - sum(block[0](column) for block in head) < foot:  # no room for curves
+        foot = max(LEAST_PLOT[1] + AROUND[1] + AROUND[3], 0.37 * height)
+        room = [top - sum(block[0](column) for block in blocks) for blocks in (head, head[1:])]
+        if room[0] < foot <= room[1]:  # the slide's title gives way to the curves
+            head = head[1:]
+        elif room[1] < foot:
             foot = MARGIN
         fill(column, foot, head + rest)
         plot(draw, (0.0, 0.0, width, column.y), f)
@@ -280,9 +283,9 @@ def costs(f):
 def about(state, f, example):
     """What it is measured for."""
     at = state.directions
-    viewer = f"θo = {at.theta_o:.3g}°"
+    viewer = f"θo\u00a0=\u00a0{at.theta_o:.3g}°"
     if len(set(getattr(f.model, "alpha", (0,)))) > 1:
-        viewer += f", φo = {at.phi_o:.3g}°"
+        viewer += f", φo\u00a0=\u00a0{at.phi_o:.3g}°"
     if example:
         yield text(f"Example ({state.material.name}: {example}): {f.about}; {viewer}", "muted", 12.0, 10)
     else:
