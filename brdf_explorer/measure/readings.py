@@ -5,14 +5,15 @@ is the same along x and y, nothing could be seen. Every value is of the project'
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import lru_cache, partial
 
 import numpy as np
 
 from ..lib import slot
-from ..lib.common import dot, length, normalize
+from ..lib.common import length, normalize
 from ..lib.fresnel import F_dielectric
+from ..lib.microfacet import cos_facet
 from ..lib.spheres import sphere_c, sphere_s
 from ..lib.srgb import luminance
 from ..model import Model
@@ -33,6 +34,7 @@ EXAMPLES = {
     "slab": MICROFACET(eta=(1.5, 1.5, 1.5), k=0.0, fresnel="dielectric"),
 }
 """The material of a reading where the active one does not raise its question."""
+NORMAL = np.array([0.0, 0.0, 1.0])
 GRAZING = np.radians(89.0)
 COARSE, FINE = (9, 16, 24), (41, 32, 96)
 """Efforts: angles on a curve; rays, and directions a ray, of an albedo on it, and of one among the costs.
@@ -57,7 +59,7 @@ class Found:
     model    the material that it is shown for, and `about` it, the parameters that count, in words
     x        (n,) degrees, of the angle `angle`; viewer: where on it the viewer is, or None
     curves   name -> (n,) of `quantity`: "printed", "right", and others beside these
-    costs    from the dearest
+    costs    what the printed one costs
     """
 
     model: Model
@@ -79,6 +81,7 @@ class Reading:
 
 
 @lru_cache(maxsize=16)
+@np.errstate(under="ignore")  # in the tails of a density
 def found(name, model, theta_o, phi_o, effort=FINE):
     """(Found, why it is of the example and not of this model, or ""), for a viewer's angles in radians."""
     reading = READINGS[name]
@@ -112,13 +115,20 @@ def is_dielectric(model):
 # --- what several readings need --------------------------------------------------------------------------------------
 
 
-def Lambda(model, w):
-    return slot("smith", model.ndf, model.smith).Lambda(w, np.array(model.alpha))
+def Lambda(model):
+    """Smith's Lambda of a model, of directions (..., 3)."""
+    of_w = slot("smith", model.ndf, model.smith).Lambda
+    return lambda w: of_w(w, np.array(model.alpha))
+
+
+def joint(shadowing, Lambda):
+    """G(wo, wi) by a choice of shadowing."""
+    G2 = slot("shadowing", shadowing).G2
+    return lambda wo, wi: G2(wo, wi, Lambda(wo), Lambda(wi))
 
 
 def white(model, G):
     """f of a model with F = 1 and masking and shadowing G(wo, wi)."""
-
     D = slot("ndf", model.ndf).D
     return lambda wo, wi: D(wo + wi, np.array(model.alpha)) * G(wo, wi) / (4 * wo[..., 2] * wi[..., 2])
 
@@ -136,8 +146,7 @@ def to_grazing(n):
 def energy(model, values, wo, n):
     """Directional albedos, of each value(wo, wi) (...) one, for one wo (3,), by n rays of n directions."""
     g, weight = quadrature(wo, model.alpha, n)
-    with np.errstate(under="ignore"):  # in the tails of a density
-        return [float(np.sum(value(wo, g.wi) * g.wi[..., 2] * weight)) for value in values]
+    return [float(np.sum(value(wo, g.wi) * g.wi[..., 2] * weight)) for value in values]
 
 
 def energies(model, values, phi_o, effort):
@@ -147,10 +156,20 @@ def energies(model, values, phi_o, effort):
     return np.degrees(theta), curves
 
 
-def exchanged(value, wo):
-    """f over what it is with light and viewer exchanged, where one of them is the normal."""
-    normal = np.array([0.0, 0.0, 1.0])
-    return float(value(wo, normal) / value(normal, wo))
+def exchanged(wo, *parts):
+    """The Cost of an exchange of light and viewer, one along the normal, by the part of f(wo, wi) that differs: G or F."""
+    pairs = [(part(wo, NORMAL), part(NORMAL, wo)) for part in parts]
+    return Cost("exchange: f(ωo, n) / f(n, ωo)", *(float(there / back) for there, back in pairs))
+
+
+def by_albedo(model, about, f, theta_o, phi_o, effort, what, other):
+    """The Found of some f(wo, wi) by name, by their directional albedos, called `what`, and one more Cost."""
+    x, curves = energies(model, f.values(), phi_o, effort)
+    two = f["printed"], f["right"]
+    at = {f"{what} E(ωo)": theta_o, f"{what} at 89°": GRAZING}
+    costs = [Cost(name, *energy(model, two, direction(theta, phi_o), effort[2])) for name, theta in at.items()]
+    curves = dict(zip(f, curves, strict=True))
+    return Found(model, about, "θo", x, f"{what} E(ωo)", curves, (*costs, other), np.degrees(theta_o))
 
 
 def roughness(model):
@@ -160,9 +179,9 @@ def roughness(model):
     return f"{name}, α = {ax:.3g}" if ax == ay else f"{name}, αx = {ax:.3g}, αy = {ay:.3g}"
 
 
-def indices(model):
-    eta, k = ((v[0] if min(v) == max(v) else None) for v in (model.eta, model.k))
-    return f", η = {eta:.3g}" if eta is not None and k == 0 else ""
+def index(model):
+    """The index of refraction in words, if it is one number."""
+    return f", η = {model.eta[0]:.3g}" if len(set(model.eta)) == 1 and max(model.k) == 0 else ""
 
 
 # --- the readings ----------------------------------------------------------------------------------------------------
@@ -183,18 +202,11 @@ def stretching(model, theta_o, phi_o, effort):
     curves = {name: 1 / (1 + isotropic_Lambda(model, w, s)) for name, s in factor.items()}
     wo = direction(theta_o, phi_o)
     costs = [Cost("Λ(ωo)", *(float(isotropic_Lambda(model, wo, s)) for s in factor.values()))]
-
-    def G(s):
-        G2 = slot("shadowing", model.shadowing).G2
-        return lambda o, i: G2(o, i, isotropic_Lambda(model, o, s), isotropic_Lambda(model, i, s))
-
-    costs.append(
-        Cost("E(ωo), white furnace", *energy(model, [white(model, G(s)) for s in factor.values()], wo, effort[2]))
-    )
-    wm, solid_angle = facets((0.0, 0.0, 1.0), model.alpha, 128)
+    f = [white(model, joint(model.shadowing, partial(isotropic_Lambda, model, x=s))) for s in factor.values()]
+    costs.append(Cost("white furnace E(ωo)", *energy(model, f, wo, effort[2])))
+    wm, solid_angle = facets(NORMAL, model.alpha, 128)
     v = wm * np.array([ay / ax, 1.0, 1.0])
-    with np.errstate(under="ignore"):  # in the tails of a density
-        D = slot("ndf", model.ndf).D(v, np.array([ay, ay])) * wm[..., 2] * solid_angle
+    D = slot("ndf", model.ndf).D(v, np.array([ay, ay])) * wm[..., 2] * solid_angle
     areas = float(np.sum(D)), float(np.sum(D * ay / ax / length(v) ** 4))
     costs.append(Cost("∫ D cos θ dω, without and with sx / |v|⁴", *areas))
     return Found(
@@ -204,62 +216,35 @@ def stretching(model, theta_o, phi_o, effort):
 
 def correlated(model, theta_o, phi_o, effort):
     """G of the light alone as printed, the smaller of both as it is meant, or by the heights' correlation."""
-    values = {"printed": lambda o, i: 1 / (1 + Lambda(model, i)) + 0 * dot(o, o)}
-    for name, rule in (("right", "full"), ("by heights", "correlated")):
-        G2 = slot("shadowing", rule).G2
-        values[name] = lambda o, i, G2=G2: G2(o, i, Lambda(model, o), Lambda(model, i))
-    f = {name: white(model, G) for name, G in values.items()}
-    x, curves = energies(model, f.values(), phi_o, effort)
-    costs = []
-    for theta, words in ((theta_o, "E(ωo), white furnace"), (GRAZING, "E at 89°, white furnace")):
-        wo = direction(theta, phi_o)
-        costs.append(Cost(words, *energy(model, (f["printed"], f["right"]), wo, effort[2])))
-    wo = direction(theta_o, phi_o)
-    costs.append(Cost("exchange: f(ωo, n) / f(n, ωo)", *(exchanged(f[name], wo) for name in ("printed", "right"))))
-    return Found(
-        model,
-        roughness(model),
-        "θo",
-        x,
-        "E(ωo), F = 1",
-        dict(zip(f, curves, strict=True)),
-        tuple(costs),
-        np.degrees(theta_o),
-    )
+    smith = Lambda(model)
+    G = {
+        "printed": lambda wo, wi: 1 / (1 + smith(wi)),
+        "right": joint("full", smith),
+        "by heights": joint("correlated", smith),
+    }
+    f = {name: white(model, joined) for name, joined in G.items()}
+    exchange = exchanged(direction(theta_o, phi_o), G["printed"], G["right"])
+    return by_albedo(model, roughness(model), f, theta_o, phi_o, effort, "white furnace", exchange)
 
 
 def fresnel(model, theta_o, phi_o, effort):
     """Fresnel's reflectance at the viewer's angle as printed, or at the facet."""
-    F = slot("fresnel", model.fresnel).F
 
-    def printed(wo, wi):
-        at = luminance(F(np.asarray(wo)[..., 2], np.array(model.eta), np.array(model.k)))
-        return white(model, model._G2)(wo, wi) * at
+    def F(c):
+        return luminance(slot("fresnel", model.fresnel).F(c, np.array(model.eta), np.array(model.k)))
 
-    f = {"printed": printed, "right": coloured(model)}
-    return of_reflectance(
-        model, f, theta_o, phi_o, effort, "exchange: f(ωo, n) / f(n, ωo)", lambda f, wo: exchanged(f, wo)
-    )
+    unpainted = white(model, joint(model.shadowing, Lambda(model)))
+    f = {"printed": lambda wo, wi: unpainted(wo, wi) * F(wo[..., 2]), "right": coloured(model)}
+    wo = direction(theta_o, phi_o)
+    exchange = exchanged(wo, lambda o, i: F(o[..., 2]), lambda o, i: F(cos_facet(o, i)))
+    return by_albedo(model, roughness(model) + index(model), f, theta_o, phi_o, effort, "albedo", exchange)
 
 
 def mirrors(model, theta_o, phi_o, effort):
     """Facets that are mirrors: with the f_mf that the lecture prints, without F, or with F."""
-    f = {"printed": white(model, model._G2), "right": coloured(model)}
-    normal = np.array([0.0, 0.0, 1.0])
-    return of_reflectance(model, f, theta_o, phi_o, effort, "f(n, n) [1/sr]", lambda f, wo: float(f(normal, normal)))
-
-
-def of_reflectance(model, f, theta_o, phi_o, effort, words, number):
-    """The Found of two f, by their albedos and one more number(f, wo)."""
-    x, curves = energies(model, f.values(), phi_o, effort)
-    costs = []
-    for theta, what in ((theta_o, "albedo E(ωo)"), (GRAZING, "albedo at 89°")):
-        costs.append(Cost(what, *energy(model, f.values(), direction(theta, phi_o), effort[2])))
-    costs.append(Cost(words, *(number(value, direction(theta_o, phi_o)) for value in f.values())))
-    about = roughness(model) + indices(model)
-    return Found(
-        model, about, "θo", x, "albedo E(ωo)", dict(zip(f, curves, strict=True)), tuple(costs), np.degrees(theta_o)
-    )
+    f = {"printed": white(model, joint(model.shadowing, Lambda(model))), "right": coloured(model)}
+    peak = Cost("f(n, n) [1/sr]", *(float(value(NORMAL, NORMAL)) for value in f.values()))
+    return by_albedo(model, roughness(model) + index(model), f, theta_o, phi_o, effort, "albedo", peak)
 
 
 AUTOCORRELATIONS = {
@@ -277,28 +262,25 @@ def slope_scale(autocorrelation, step=1e-3):
 def slope(model, theta_o, phi_o, effort):
     """alpha as sqrt(2) sigma / tau where tau is that of the other autocorrelation, or as the mean slope; and alpha."""
     along = float(np.hypot(model.alpha[0] * np.cos(phi_o), model.alpha[1] * np.sin(phi_o)))
-    model = replace(model, ndf="beckmann", alpha=(along, along), smith="exact")
+    D, smith = slot("ndf", "beckmann").D, slot("smith", "beckmann", "exact").Lambda
     scale = [slope_scale(C) for C in AUTOCORRELATIONS.values()]
-    wm, solid_angle = facets((0.0, 0.0, 1.0), model.alpha, 128)
-    ndf = slot("ndf", "beckmann")
-    with np.errstate(under="ignore"):  # in the tails of a density
-        area = ndf.D(wm, np.array(model.alpha)) * wm[..., 2] * solid_angle
-        steep = length(wm[..., :2]) / wm[..., 2]
-        mean, square = float(np.sum(area * steep)), float(np.sum(area * steep**2))
+    wm, solid_angle = facets(NORMAL, (along, along), 128)
+    area = D(wm, np.array([along, along])) * wm[..., 2] * solid_angle
+    steep = length(wm[..., :2]) / wm[..., 2]
+    mean, square = float(np.sum(area * steep)), float(np.sum(area * steep**2))
     alphas = {"printed": along * scale[0] / scale[1], "right": along, "α = mean slope": mean}
     x = np.linspace(0.0, min(np.degrees(np.arctan(3 * along)), 89.0), effort[0])
     wm, wo = direction(np.radians(x), 0.0), direction(theta_o, 0.0)
-    with np.errstate(under="ignore"):
-        curves = {name: ndf.D(wm, np.array([a, a])) for name, a in alphas.items()}
-    peaks = [float(curves[name][0]) for name in ("printed", "right")]
-    seen = [float(1 / (1 + Lambda(replace(model, alpha=(a, a)), wo))) for a in (alphas["printed"], along)]
+    curves = {name: D(wm, np.array([a, a])) for name, a in alphas.items()}
+    pairs = [(curves[name][0], 1 / (1 + smith(wo, np.full(2, alphas[name])))) for name in ("printed", "right")]
+    (peak, seen), (right_peak, right_seen) = np.array(pairs, dtype=float).tolist()
     costs = (
         Cost("α of heights with σ² exp(−r² / τ²)", alphas["printed"], along),
-        Cost("D along the normal [1/sr]", *peaks),
-        Cost("G1(ωo)", *seen),
+        Cost("D along the normal [1/sr]", peak, right_peak),
+        Cost("G1(ωo)", seen, right_seen),
         Cost("|grad h|: mean, and rms = α", mean, float(np.sqrt(square))),
     )
-    return Found(model, roughness(model), "θm", x, "D(ωm) [1/sr]", curves, costs)
+    return Found(model, f"Beckmann, α = {along:.3g}", "θm", x, "D(ωm) [1/sr]", curves, costs)
 
 
 def fourier(model, theta_o, phi_o, effort):
@@ -312,12 +294,12 @@ def fourier(model, theta_o, phi_o, effort):
         return [half_space.f(wo, direction(theta_i, phi), s, doubled=doubled) for doubled in (False, True)]
 
     curves = dict(zip(("printed", "right"), both(theta_o, np.radians(x)), strict=True))
-    costs = []
-    for words, theta in (("f at θi = θo", theta_o), ("f at θi = 85°", np.radians(85.0))):
-        for phi, where in ((np.pi, "φ = 180°"), (0.0, "φ = 0°")):
-            costs.append(Cost(f"{words}, {where} [1/sr]", *map(float, both(theta, phi))))
-    costs.sort(key=lambda cost: -abs(cost.printed / cost.right - 1))
-    return Found(model, f"c = {c:.4g}", "φ between ωi and ωo, θi = θo", x, "f [1/sr]", curves, tuple(costs[:3]))
+    costs = [
+        Cost("f at θi = 85°, φ = 180° [1/sr]", *map(float, both(np.radians(85.0), np.pi))),
+        Cost("f at θi = θo, φ = 180° [1/sr]", *map(float, both(theta_o, np.pi))),
+        Cost("f at θi = θo, φ = 0° [1/sr]", *map(float, both(theta_o, 0.0))),
+    ]
+    return Found(model, f"c = {c:.4g}", "φ between ωi and ωo, θi = θo", x, "f [1/sr]", curves, tuple(costs))
 
 
 PASS = 0.9

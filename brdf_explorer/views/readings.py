@@ -244,28 +244,28 @@ def heading(words, few):
 def costs(f):
     """What the wrong reading costs: a table of each quantity by both."""
 
-    def cells(column, words, colors, size):
-        """Words in the columns of numbers, from the right on; the left edge of these."""
-        x = column.right
-        for word, color in zip(words[0 if column.right - column.left >= FACTOR else 1 :], colors, strict=False):
-            column.line(word, color, size, x, 1.0)
-            x -= NUMBER
-        return x
+    def columns(column):
+        """How many columns of numbers there are: the printed one, the right one, and their quotient where it has room."""
+        return 3 if column.right - column.left >= FACTOR else 2
+
+    def cells(column, words, size):
+        count = columns(column)
+        for i, (word, color) in enumerate(words[:count]):
+            column.line(word, color, size, column.right - NUMBER * (count - 1 - i), 1.0)
 
     def head(column):
         column.y -= 14
-        wide = column.right - column.left >= FACTOR
-        cells(column, ("factor", "right", "as printed"), ("muted", "blue", "red") if wide else ("blue", "red"), 12.0)
+        cells(column, (("as printed", "red"), ("right", "blue"), ("factor", "muted")), 12.0)
         column.line("What it costs", "muted", 12.0)
 
     def row(cost):
         def rows(column):
-            numbers = NUMBER * (3 if column.right - column.left >= FACTOR else 2)
-            return Column(column.draw, column.left, column.right - numbers, 0).wrapped(cost.name, 12.5)
+            right = column.right - NUMBER * columns(column)
+            return Column(column.draw, column.left, right, column.y).wrapped(cost.name, 12.5)
 
         def write(column):
             factor = "" if np.isnan(cost.printed) or cost.right == 0 else f"× {number(cost.printed / cost.right, 3)}"
-            cells(column, (factor, value(cost.right), value(cost.printed)), ("ink",) * 3, 12.5)
+            cells(column, [(word, "ink") for word in (value(cost.printed), value(cost.right), factor)], 12.5)
             for line in rows(column):
                 column.line(line)
 
@@ -273,10 +273,7 @@ def costs(f):
 
     first, *others = (row(cost) for cost in f.costs)
     # the head is of no use without a row
-    yield (
-        lambda column: 14 + LINE * 12 + first[0](column),
-        lambda column: (head(column), first[1](column)),
-    )
+    yield lambda column: 14 + LINE * 12 + first[0](column), lambda column: (head(column), first[1](column))
     yield from others
 
 
@@ -339,8 +336,10 @@ def plot(draw, box, f):
 
 
 def ranged(values):
-    """(scale, low, high) of an axis that shows all values: logarithmic where they go over more than two decades."""
-    most, least = float(values.max()), float(values[values > 0].min())
+    """(scale, low, high) of an axis that shows all values: logarithmic where they go over some decades."""
+    most, least = float(values.max()), float(np.min(values, where=values > 0, initial=np.inf))
+    if most == 0:
+        return "linear", 0.0, 1.0
     if most / least > 300:
         return "log", max(least, most / 1e12) / 1.3, most * 1.5
     return "linear", 0.0, most * 1.08
