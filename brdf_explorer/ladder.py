@@ -157,7 +157,7 @@ LADDERS = {
             "spheres",
             "Does it show that a body consists of grains?",
             "f",
-            ("lambert", "lambert_sphere"),
+            ("lambert", "lambert_sphere_fast", "lambert_sphere"),
             choice="diffuse",
         ),
         of_choice(

@@ -76,6 +76,7 @@ SCREENS = {
     ),
     "polar-grazing": ("polar", at(state("gold"), theta_o=80.0).with_view("polar", quantity="f_cos")),
     "polar-sharp": ("polar", State((SHARP,)).with_view("polar", radius="log", decades=8)),
+    "readings-light": ("readings", at(state("gold"), theta_o=75.0).with_view("readings", reading="correlated")),
     "microsurface-light": (
         "microsurface",
         rough(at(state("gold"), theta_o=65.0), 0.7, light=140.0).with_view(

@@ -30,6 +30,7 @@ ONLY_NUMPY = {
     "common": {"dot", "length", "normalize", "mix", "quotient", "vec", "split", "above_horizon"},  # words that GLSL has
     "srgb": {"srgb_decode"},  # colours of the interface become linear once, on their way in
     "lambert_sphere": {"polynomial"},  # a series of one variable
+    "diffuse_lambert_sphere_fast": {"grazing_albedo"},  # of a law's limit
 }
 ONLY_GLSL = {
     "ndf_beckmann": {"leading"},  # of float32's rounding

@@ -9,7 +9,8 @@ since only the first scattering is exact. Eq. 27 is a Fourier coefficient and co
 """
 
 from .common import PI, dot, split
-from .lambert_sphere import H0_slope, H1_slope, H2_slope, phase, polynomial, sphere_c, sphere_s
+from .lambert_sphere import H0_slope, H1_slope, H2_slope, polynomial
+from .spheres import phase, sphere_c, sphere_s
 
 
 def diffuse_f(wo, wi, albedo, sigma, r):

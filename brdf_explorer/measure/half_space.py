@@ -17,7 +17,7 @@ from math import factorial
 import numpy as np
 
 from ..lib.common import PI, split
-from ..lib.lambert_sphere import phase
+from ..lib.spheres import phase
 
 MODES = (0, 1, 2)
 

@@ -7,11 +7,12 @@ from .hemisphere import Hemisphere
 from .lobe import Lobe
 from .microsurface import Microsurface
 from .polar import Polar
+from .readings import Readings
 from .sampling import Sampling
 from .sphere import Sphere
 from .stability import Stability
 
 VIEWS = {
     view.name(): view
-    for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Sampling, Compare, Chart, Stability, Microsurface)
+    for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Sampling, Compare, Chart, Stability, Microsurface, Readings)
 }

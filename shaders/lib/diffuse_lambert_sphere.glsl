@@ -6,6 +6,7 @@
 // at most 1.00008, since only the first scattering is exact.
 // Eq. 27 is a Fourier coefficient and counts twice: read without the 2 it errs by up to 20 % of f.
 #include "lib/lambert_sphere.glsl"
+#include "lib/spheres.glsl"
 
 vec3 diffuse_f(vec3 wo, vec3 wi, vec3 albedo, float sigma, float r) {
   vec3 c = sphere_c(albedo), s = sphere_s(albedo);

@@ -1,7 +1,7 @@
 // A half space of Lambertian spheres: d'Eon 2021, "An Analytic BRDF for Materials with Spherical Lambertian Scatterers".
-// The phase function exactly; Chandrasekhar's H (Eq. 22) and the polynomials beside it by tables that derive_lambert_sphere.py
-// makes from the exact solution, brdf_explorer/measure/half_space.py. Beside c, the share of its light that a sphere reflects,
-// s = sqrt(1 - c) is needed, in which all is smooth, up to s = 0.
+// Chandrasekhar's H (Eq. 22) and the polynomials beside it by tables that derive_lambert_sphere.py makes from the exact
+// solution, brdf_explorer/measure/half_space.py. Beside c, the share of its light that a sphere reflects, s = sqrt(1 - c) is
+// needed, in which all is smooth, up to s = 0.
 #include "lib/common.glsl"
 #include "lib/transcendental.glsl"
 
@@ -50,42 +50,6 @@ const float TABLE[258] = float[258](
   -6.17837522e-02, 2.42081314e-03, 6.97770161e-04, 5.80077020e-05, 1.14676514e-05, 1.60418447e-06, 6.22810377e-01,
   3.33680771e-02, 9.56120004e-03, 7.58363739e-04, 1.45528624e-04, 1.91623260e-05
 );
-
-// The phase function of a Lambertian sphere, 1/sr: 2 (sin x - x cos x) / (3 pi^2), where x is the deflection, the angle between
-// -wi and wo; by its series where that cancels. Lambert 1760; Blinn 1982.
-float phase(vec3 wo, vec3 wi) {
-  float forth = length(wo + wi), back = length(wo - wi);
-  float x = 2.0 * atan2_precise(forth, back);
-  float x2 = x * x;
-  float cubic = x * x2 * (1.0 / 3.0 - x2 * (1.0 / 30.0 - x2 * (1.0 / 840.0 - x2 * (1.0 / 45360.0 - x2 / 3991680.0))));
-  if (x > 0.8) cubic = 0.5 * forth * back - 0.25 * x * (back * back - forth * forth);
-  return 2.0 / (3.0 * PI * PI) * cubic;
-}
-
-// c of a diffuse albedo, d'Eon's fit, Eq. 46. Takes c above 1 by up to 3e-10 where the albedo is above 0.9988.
-vec3 sphere_c(vec3 albedo) {
-  vec3 c;
-  for (int i = 0; i < 3; i++) {
-    float a = albedo[i];
-    float lost = a < 1.0 ? log_precise(1.0 - a) : -87.0;
-    // 1 - (1 - a)^2.73556, for small albedos by its binomial series
-    float share = 1.0 - exp_precise(2.73556 * lost);
-    if (a < 0.1) share = a * (2.73556 - a * (2.3738642568 - a * (0.5820398709 + a * (0.0384786565 + a * 0.0097307507))));
-    c[i] = share / (1.0 - 0.184096 * exp_precise(2.48423 * lost));
-  }
-  return c;
-}
-
-// s = sqrt(1 - c), of the same fit.
-vec3 sphere_s(vec3 albedo) {
-  vec3 s;
-  for (int i = 0; i < 3; i++) {
-    float lost = albedo[i] < 1.0 ? log_precise(1.0 - albedo[i]) : -87.0;
-    float power = exp_precise(2.48423 * lost);
-    s[i] = sqrt(max(power * (exp_precise(0.25133 * lost) - 0.184096) / (1.0 - 0.184096 * power), 0.0));
-  }
-  return s;
-}
 
 // A table's sum of T_i(2 s - 1) T_j(2 sqrt(mu) - 1), by Clenshaw's recurrence.
 vec3 series(int first, int rows, int columns, float mu, vec3 s) {
