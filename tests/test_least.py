@@ -88,10 +88,11 @@ def test_answer_is_that_of_an_exhaustive_search(gpu, material, scene, tolerance)
     prices = generous(asked)
     answer = result(least(gpu, state, tolerance, ladders=ladders, prices=prices))
     judge = module.Judge(gpu, state, asked, "picture", tolerance)
-    enough = [c for c in in_order(asked, prices, state) if result(judge.fine(c)).high <= tolerance]
+    ordered = result(in_order(asked, prices, state))
+    enough = [c for c in ordered if result(judge.fine(c)).high <= tolerance]
     cheapest = min(enough, key=lambda c: prices.frame(asked, c, at(state, asked, c)))
     assert tuple(s.chosen for s in answer.steps) == tuple(q.methods[i] for q, i in zip(asked, cheapest, strict=True))
-    assert answer.evaluated[1] < len(in_order(asked, prices, state))
+    assert answer.evaluated[1] < len(ordered)
 
 
 # --- the answer holds ------------------------------------------------------------------------------------------------
