@@ -563,10 +563,10 @@ def least(state, preset, tolerance, metric, as_json, size, output):
             save_view(gpu, state, "least", output, size, watch=show)
     if as_json:
         click.echo(text)
-    else:
-        print_table(HEADS, rows(answer), title=state.material.name)
-        click.echo("\n".join(sentences(answer)))
-        click.echo(answer.device)
+        return
+    print_table(HEADS, rows(answer), title=state.material.name)
+    click.echo("\n".join(sentences(answer)))
+    click.echo(answer.device)
     if output:
         click.echo(output)
 

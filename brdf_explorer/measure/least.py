@@ -4,11 +4,13 @@ Combinations of one method of each ladder are looked at in order of cost. Bounds
 most of them; a finer one has to confirm, its own uncertainty included, or the search goes on.
 
 The metric "picture" is the RMSE over the disc, relative to the mean. Its square is a bias, which ladders of f have, and a
-variance, which samplers, sample counts and a model whose f is itself an estimate have. The bias is found in float64 at places
-of the disc instead of pixels: a pixel averages, so the error of a picture of any size is at most that one. Squares of it are
-products of two independent halves, so that no noise passes for bias. Variance and bias together are found again in pictures
-by the shaders, twice with independent random numbers: each combination against the reference with the same numbers. Other
-metrics are of pictures; they see no ladder of noise, which then stays at its reference.
+variance, which samplers and sample counts have. The bias is found in float64 at places of the disc instead of pixels: a
+pixel averages, so the error of a picture of any size up to LARGEST is at most that one. (Beyond that, towards the silhouette,
+an f without masking has no bound, nor has its error.) Variance and bias together are found again in pictures by the shaders,
+twice with independent random numbers: each combination against the reference with the same numbers. Squares of biases are
+products of two independent halves, so that no noise passes for bias. Where f is itself an estimate, by the combination or by
+the reference, pictures alone judge, and the answer is for their size. Other metrics are of pictures; they see no ladder of
+noise, which then stays at its reference.
 
 Work is done in generators that yield every few milliseconds, and whose result is what `return` gives.
 """
@@ -44,6 +46,8 @@ SPARE = 0.7
 """What is surely noise of the reference's f counts by this share for a combination's whose own was not measured."""
 TIMED = (192, 192)
 """Pixels of the pictures that are timed."""
+EARLY = 64
+"""Passes of pictures that reject where f is an estimate."""
 PASSES = 64
 """Passes of pictures that metrics other than "picture" compare."""
 LONGEST = 65536
@@ -52,6 +56,12 @@ EXACT = 1e-9
 """Errors below it are of rounding in float64."""
 CHUNK = 512
 """Directions at which f is found between two yields."""
+
+
+LARGEST = 4096
+"""Pixels of a side of the largest pictures that the answer is for."""
+EDGE = 1.0 - 0.5 / (0.46 * LARGEST)
+"""Largest distance from the disc's centre, in radii, at which views/sphere.frag shades those."""
 
 
 EYE = np.array([0.0, 0.0, 1.0])
@@ -286,8 +296,9 @@ def in_order(asked, prices, state):
 class Places:
     """Places on the sphere, with directions to the light, at which all combinations are compared.
 
-    Places are drawn evenly over the disc, about the highlight of the directional light, and where a mirror would show the
-    bright parts of the environment; directions from the reference's f and from the environment, in two independent halves.
+    Places are drawn evenly over the disc, towards its edge, about the highlight of the directional light, and where a mirror
+    would show the bright parts of the environment; directions from the reference's f and from the environment, in two
+    independent halves.
     """
 
     def __init__(self, state, count, rays, seed):
@@ -295,19 +306,19 @@ class Places:
         light, model = state.light, state.model
         self.irradiance, self.surrounded = light.irradiance, surrounded(light)
         self.toward = np.array(toward(light))
-        parts = [(even(count, rng), lambda normal: np.ones(len(normal)))]
+        parts = [(even(count, rng), lambda normal: np.ones(len(normal))), towards_edge(count, rng)]
         if self.irradiance > 0 and self.toward[2] > -1 + 1e-6:
             parts.append(about_highlight(self.toward, model.slopes(), count, rng))
         if self.surrounded:
             found = environment(light.environment, light.file)
             to_map = np.reshape(turn(light), (3, 3))  # right of a row of vectors
             parts.append(about_bright(found, to_map, count, rng))
-        shares = [0.5, *[0.5 / (len(parts) - 1)] * (len(parts) - 1)] if len(parts) > 1 else [1.0]
+        shares = [0.5, *[0.5 / (len(parts) - 1)] * (len(parts) - 1)]
         chosen = [p[rng.permutation(len(p))[: round(s * count)]] for (p, _), s in zip(parts, shares, strict=True)]
         self.count = sum(map(len, chosen))
         shares = [len(c) / self.count for c in chosen]
         normal = np.concatenate(chosen)
-        normal = normal[normal[:, 2] > 1e-6]  # those behind count as 0
+        normal = normal[normal[:, 2] > np.sqrt(1 - EDGE**2)]  # those behind count as 0
         self.weight = 1 / sum(s * density(normal) for s, (_, density) in zip(shares, parts, strict=True))
         frame = np.swapaxes(frames(normal), 0, 1)  # tangents, bitangents, normals: (3, places, 3)
         self.wo = normalize(vec(*(f[:, 2] for f in frame)))
@@ -332,18 +343,14 @@ class Places:
         return wi, seen[..., :3] * (share * gain * 2 / rays)[..., None]
 
     def radiance(self, model):
-        """Radiance to the eye (places, 2, 3), as a generator's result: two estimates.
-
-        They differ in the directions to the environment, and in the random numbers of f, if it takes any.
-        """
+        """Radiance to the eye (places, 2, 3), as a generator's result: two estimates by other directions to the environment."""
         total = np.zeros((len(self.wo), 2, 3))
         for i, part in enumerate(self.parts):
             with np.errstate(under="ignore"):
                 wo = self.wo[part]
                 if self.irradiance > 0:
                     wi = self.straight[part]
-                    light = self.irradiance * np.maximum(wi[:, None, 2:], 0.0)
-                    total[part] += light * np.stack([model.f(wo, wi) for _ in range(1 + model.stochastic)], axis=1)
+                    total[part] += (model.f(wo, wi) * (self.irradiance * np.maximum(wi[:, 2:], 0.0)))[:, None]
                 if self.surrounded:
                     wi, light = self.around[i]
                     total[part] += np.sum(model.f(wo[:, None, None], wi) * light, axis=2)
@@ -375,9 +382,20 @@ def steps(rng, shape):
 
 def even(count, rng):
     """Normals (count, 3) of places that are even over the disc."""
-    r, phi = np.sqrt((np.arange(count) + rng.random(count)) / count), 2 * np.pi * rng.random(count)
-    r = np.minimum(r, 1 - 1e-9)
+    return on_disc(np.sqrt((np.arange(count) + rng.random(count)) / count), rng)
+
+
+def on_disc(r, rng):
+    """Normals (count, 3) at distances (count,) from the disc's centre."""
+    phi = 2 * np.pi * rng.random(len(r))
     return vec(r * np.cos(phi), r * np.sin(phi), np.sqrt((1 - r) * (1 + r)))
+
+
+def towards_edge(count, rng):
+    """Normals (count, 3) whose cosine to the eye is even in its logarithm down to the edge, and their density over even ones'."""
+    decay = -0.5 * np.log(1 - EDGE**2)
+    cosine = np.exp(-decay * (np.arange(count) + rng.random(count)) / count)
+    return on_disc(np.sqrt((1 - cosine) * (1 + cosine)), rng), lambda normal: 1 / (2 * decay * normal[:, 2] ** 2)
 
 
 def about_highlight(toward, alpha, count, rng):
@@ -564,16 +582,22 @@ class Judge:
     def rough(self, combination):
         """Bounds from few places in float64, and from pictures of the reference's f with the combination's noise."""
         found = Estimate(0.0, 0.0, inf)
-        if self.split:
-            model = self.only(combination, noise=False).model
-            bias, _ = yield from self.biases[0].of(model)
+        state = self.only(combination, noise=False)
+        if self.split and self.estimated(state):
+            bias, *_ = yield from self.pictured(combination, EARLY)
             found = root(bias)
-            random = self.reference.model.stochastic or model.stochastic  # of one f's noise another's does not follow
-            if surrounded(self.state.light) and not random and found.low <= self.tolerance:
+        elif self.split:
+            bias, _ = yield from self.biases[0].of(state.model)
+            found = root(bias)
+            if surrounded(self.state.light) and found.low <= self.tolerance:
                 noise = yield from self.variance(self.only(combination, noise=True))
                 found = root(bias, noise._replace(low=noise.low * SPARE**2))
         self.seen[combination] = found
         return found
+
+    def estimated(self, state):
+        """Whether f of a state or of the reference is an estimate: its noise is then unlike that of others."""
+        return state.model.stochastic or self.reference.model.stochastic
 
     def variance(self, state):
         """The variance of a state's picture over the mean's square, an Estimate: half the square of what two differ by."""
@@ -586,30 +610,36 @@ class Judge:
         if not self.split:
             found = yield from self.compared(combination)
         else:
-            bias, _ = yield from self.biases[1].of(self.only(combination, noise=False).model)
+            state, bias = self.only(combination, noise=False), NONE
+            if not self.estimated(state):
+                bias, _ = yield from self.biases[1].of(state.model)
             found = root(bias)
             if found.low <= self.tolerance:
-                noise, whole = yield from self.pictured(combination)
+                _, noise, whole = yield from self.pictured(combination)
                 self.noise[combination] = float(np.sqrt(noise.value))
                 found = Estimate(*map(max, zip(root(bias, noise), root(whole), strict=True)))
         self.seen[combination] = found
         self.confirmed.add(combination)
         return found
 
-    def pictured(self, combination):
-        """(variance, mean square error) of the combination's picture over the reference's mean's square, Estimates.
+    def pictured(self, combination, passes=None):
+        """(bias squared, variance, both) of the combination's picture over the reference's mean's square, Estimates.
 
         The reference has the same samplers and numbers, so that their noise does not pass for bias.
         """
         state, reference = at(self.state, self.asked, combination), self.only(combination, noise=True)
+        return (yield from self.apart(state, reference, passes))
+
+    def apart(self, state, reference, passes=None):
+        """What `pictured` says, of two states."""
         found = []
         for replica in range(1 + (noisy(state) or noisy(reference))):
-            own = yield from self.shots.of(state, SIDE, replica)
-            true = yield from self.shots.of(reference, SIDE, replica)
+            own = yield from self.shots.of(state, SIDE, replica, passes)
+            true = yield from self.shots.of(reference, SIDE, replica, passes)
             found.append((own, (own - true)[..., :3]))
         squares = found[0][1] * found[-1][1]
         noise = (found[0][0] - found[-1][0])[..., :3] ** 2 / 2
-        return over_disc(noise, true), over_disc(squares + noise, true)
+        return tuple(over_disc(s, true) for s in (squares, noise, squares + noise))
 
     def compared(self, combination):
         """The error of pictures by a metric of pictures, with the same numbers; its own error is the change from half of them."""
@@ -640,9 +670,13 @@ class Judge:
             own = yield from self.variance(state)
             first = yield from self.variance(reference)
             return float(np.sqrt(own.value)), float(np.sqrt(first.value)), 0.0
+        if self.split and (state.model.stochastic or reference.model.stochastic):
+            square, *_ = yield from self.apart(state, reference)
+            own, true = self.shots.of(state, SIDE), self.shots.of(reference, SIDE)
+            return root(square).value, 0.0, brightening((yield from own), (yield from true))
         if self.split and question.ladder.measures == "f":
             square, shift = yield from self.biases[1].of(state.model, reference.model)
-            return float(np.sqrt(max(square.value, 0.0))), 0.0, shift
+            return root(square).value, 0.0, shift
         error = yield from self.difference(state, reference, SIDE, PASSES)
         return error, 0.0, (yield from self.difference(state, reference, SIDE, PASSES, brightening))
 

@@ -192,7 +192,11 @@ class Page:
         pixels = [s.pixels() for s in spheres]
         largest = difference_map(self.gpu, draw, "least difference", box, targets, pixels)
         percent = f"±{amount(largest, 'picture')}" if largest else "the reference is black"
-        words = f"Difference of luminance, {percent} of the mean, red: brighter", f"Difference, {percent}", percent
+        words = (
+            f"Difference of luminance, {percent} of the mean, red: brighter",
+            f"Difference, {percent}",
+            f"Δ {percent}",
+        )
         self.head(draw, box, words)
         covered = pixels[0][..., 3] > 0
         mean, other = (float(p[covered][:, :3].mean()) for p in pixels)
@@ -206,11 +210,14 @@ class Page:
 
     def room(self, found, told):
         """The Room of a table of rows, of sentences as far as they leave the pictures room, and of those."""
-        lines = wrapped(told, self.width - 2 * MARGIN, WORDS)
+        lines, ends = [], [0]
+        for sentence in told:
+            lines += wrapped([sentence], self.width - 2 * MARGIN, WORDS)
+            ends.append(len(lines))
         above = self.size[0], self.size[1] - TITLE * self.scale
         table = ROW * (len(found) + 1) + 16
         most = side_of(dict(enumerate(layout(above, self.scale, 3, 6))))
-        for high, count in [*((table, n) for n in range(len(lines), -1, -1)), (0, 0)]:
+        for high, count in [*((table, n) for n in reversed(ends)), (0, 0)]:
             foot = LINE * count + 10 * (count > 0) + 6
             boxes = layout(above, self.scale, 3, high + foot)
             side = side_of(dict(enumerate(boxes)))
