@@ -122,7 +122,7 @@ def random_state(seed):
     if rng.random() < 0.2:
         color = {"albedo": tuple(rng.uniform(0.0, 1.0, 3)), "sigma": rng.uniform(0.0, 1.0), "r": rng.uniform(0.0, 1.0)}
         model = MODELS["diffuse"](**color)
-    around = str(rng.choice(["none"] * 6 + ["furnace", "sky", "studio"]))
+    around = str(rng.choice(["none"] * 9 + ["furnace", "sky", "studio"]))
     both = around == "none" or rng.random() < 0.3
     single = {"theta": float(rng.uniform(0, 120)), "phi": float(rng.uniform(-180, 180)), "irradiance": 3.0 * both}
     light = Light(**single, environment=around, rotation=float(rng.uniform(-180, 180)))
