@@ -4,6 +4,7 @@ import itertools
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -223,6 +224,21 @@ def test_no_answer_is_beyond_the_tolerance_on_a_finer_evaluation(gpu, first):
     assert reduced >= 35 and refused <= 25
 
 
+@pytest.mark.parametrize("seed", [61, 71, 74, 93])
+@np.errstate(under="ignore")
+def test_bounds_of_the_bias_hold_and_are_close(seed):
+    """Whatever the places, also where what errs is a rim or a narrow highlight: masking left out, by quadrature."""
+    state, _ = random_state(seed)
+    reference, none = (
+        LADDERS["shadowing"].at(state, m) for m in (LADDERS["shadowing"].methods[-1], LADDERS["shadowing"].methods[0])
+    )
+    truth = error_under_one_light(SimpleNamespace(reference=reference, reduced=none), 768, 256) ** 2
+    for places in range(10):
+        found, _ = result(module.Bias(reference, module.FINE, places).of(none.model))
+        assert found.low <= truth <= found.high
+        assert np.sqrt(found.high) < 1.6 * np.sqrt(truth)
+
+
 def test_same_seeds_same_answer(gpu):
     state = load("gold", load("one_light"))
     asked, _ = questions(state, ladders=OF_F)
@@ -439,10 +455,11 @@ def test_pictures_load_their_states_and_nothing_is_measured_again(gpu, quick, mo
         assert [k.state(state).model for k in pictures[-1].links if k.state] == models
 
 
-@pytest.mark.parametrize("theme, scene", [("light", "one_light"), ("dark", "white_furnace")])
+@pytest.mark.parametrize("theme", ["light", "dark"])
 @pytest.mark.parametrize("size, scale", [((280, 220), 1.0), ((420, 900), 1.0), ((1200, 680), 1.0), ((1400, 1300), 2.0)])
-def test_view_has_room_for_its_words(gpu, quick, size, scale, theme, scene):
-    state = load("gold", load(scene)).with_view("sphere", samples=16).with_view("least", tolerance=0.5)
+def test_view_has_room_for_its_words(gpu, quick, size, scale, theme):
+    scene = "white_furnace" if theme == "dark" else "one_light"
+    state = load("gold", load(scene)).with_view("sphere", samples=4).with_view("least", tolerance=0.8)
     state = replace(state, look=replace(state.look, theme=theme))
     for picture in drawn(gpu, state, size, scale):
         if picture.done or not picture.links:
