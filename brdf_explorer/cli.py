@@ -546,7 +546,8 @@ def least(state, preset, tolerance, metric, as_json, size, output):
 
     from .export import DRAWINGS, known_suffix, save_view, write_png
     from .gpu import offscreen
-    from .measure.least import HEADS, report, result, rows, sentences
+    from .measure.advice import HEADS, report, rows, sentences
+    from .measure.least import result
     from .state import dumps, save
 
     state = state.with_view("least", tolerance=tolerance, **({"metric": metric} if metric else {}))

@@ -19,8 +19,11 @@ from brdf_explorer.ladder import LADDERS, Ladder, Method
 from brdf_explorer.lib.common import normalize
 from brdf_explorer.lib.environment import environment_lookup, sample_environment
 from brdf_explorer.lib.random import STREAM_BSDF, STREAM_LIGHT, random2
+from brdf_explorer.measure import advice
+from brdf_explorer.measure import bias as bias_of
 from brdf_explorer.measure import least as module
-from brdf_explorer.measure.least import Estimate, Prices, at, in_order, least, passes, questions, result, search
+from brdf_explorer.measure.bias import Estimate
+from brdf_explorer.measure.least import Prices, at, in_order, least, passes, questions, result, search
 from brdf_explorer.model import Invalid
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Light, Material, State, load, loads, save
@@ -153,7 +156,7 @@ def error_under_one_light(answer, rings=384, around=192):
     directions = np.stack(np.broadcast_arrays(np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)))
     normal = np.moveaxis(directions, 0, -1).reshape(-1, 3) @ np.stack([x, np.cross(axis, x), axis])
     solid = np.broadcast_to(np.sin(theta) ** 2 * (t[1] - t[0]) * 2 * np.pi / around, (rings, around)).ravel()
-    seen = normal[:, 2] > np.sqrt(1 - module.EDGE**2)  # the rest no picture shows
+    seen = normal[:, 2] > np.sqrt(1 - bias_of.EDGE**2)  # the rest no picture shows
     normal, area = normal[seen], (solid * normal[:, 2])[seen] / np.pi  # of the disc
     assert area.sum() == pytest.approx(1.0, abs=2e-3)
     own, true = (under_one_light(s.model, state.light, *frames(normal)) for s in (answer.reduced, state))
@@ -234,7 +237,7 @@ def test_bounds_of_the_bias_hold_and_are_close(seed):
     )
     truth = error_under_one_light(SimpleNamespace(reference=reference, reduced=none), 768, 256) ** 2
     for places in range(10):
-        found, _ = result(module.Bias(reference, module.FINE, places).of(none.model))
+        found, _ = result(bias_of.Bias(reference, module.FINE, places).of(none.model))
         assert found.low <= truth <= found.high
         assert np.sqrt(found.high) < 1.6 * np.sqrt(truth)
 
@@ -262,13 +265,13 @@ def test_answer_names_what_was_not_tried(gpu):
     ladders = OF_F | {"environment": SAMPLES}
     asked, _ = questions(state, ladders=ladders)
     answer = result(least(gpu, state, 0.05, ladders=ladders, prices=generous(asked)))
-    left = dict(module.untried(answer))
+    left = dict(advice.untried(answer))
     assert set(left) == {"smith", "environment", "fresnel dielectric"}
     tried = {s.question.ladder.name for s in answer.steps}
     assert tried == {"shadowing", "fresnel"}
-    words = " ".join(module.sentences(answer))
+    words = " ".join(advice.sentences(answer))
     assert all(name in words for name in left)
-    assert [len(row) for row in module.rows(answer)] == [len(module.HEADS)] * 2
+    assert [len(row) for row in advice.rows(answer)] == [len(advice.HEADS)] * 2
 
 
 @pytest.mark.parametrize("metric", ["flip", "itp", "brightness"])
@@ -292,7 +295,7 @@ def test_scene_matters(gpu, material, ladder, tolerance, cheapest, error):
         asked, _ = questions(state, ladders=ladders)
         answer = result(least(gpu, state, tolerance, ladders=ladders, prices=generous(asked)))
         answers[scene] = answer.steps[0].chosen.name
-        bias, _ = result(module.Bias(answer.reference, module.FINE, 2).of(at(state, asked, (0,)).model))
+        bias, _ = result(bias_of.Bias(answer.reference, module.FINE, 2).of(at(state, asked, (0,)).model))
         assert scene == "one_light" or bias.low < error**2 < bias.high
     assert answers["one_light"] == cheapest != answers["white_furnace"]
 
@@ -403,13 +406,13 @@ def test_work_is_done_in_small_steps(gpu, monkeypatch):
     monkeypatch.setattr(cls, "f", lambda model, wo, wi: counts.append(wi.size // 3) or f(model, wo, wi))
     state = load("gold", load("studio"))
     gpu.errors.pop("least", None)
-    bias = module.Bias(state, module.FINE, 1)
+    bias = bias_of.Bias(state, module.FINE, 1)
     steps = bias.of(replace(state.model, shadowing="none"))
     done = 0
     while next(steps, ...) is None:
-        assert sum(counts[done:]) <= module.CHUNK
+        assert sum(counts[done:]) <= bias_of.CHUNK
         done = len(counts)
-    assert sum(counts) > 20 * module.CHUNK
+    assert sum(counts) > 20 * bias_of.CHUNK
 
 
 # --- the view and the command ----------------------------------------------------------------------------------------
@@ -436,8 +439,8 @@ def test_view_shows_progress_and_then_the_answer(gpu, quick):
     assert any("Looking" in label.text for label in pictures[0].labels)
     texts = [label.text for label in pictures[-1].labels]
     answer = result(state.views["least"].answer(gpu, state))
-    assert all(cell in texts for row in module.rows(answer) for cell in row[:2])
-    assert module.sentences(answer)[0] in texts
+    assert all(cell in texts for row in advice.rows(answer) for cell in row[:2])
+    assert advice.sentences(answer)[0] in texts
 
 
 def test_pictures_load_their_states_and_nothing_is_measured_again(gpu, quick, monkeypatch):

@@ -6,15 +6,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..measure.advice import HEADS, amount, rows, sentences, tone
 from ..measure.error import METRICS
-from ..measure.least import HEADS, amount, at, least, questions, rows, sentences, settled, tone
+from ..measure.least import at, least, questions, settled
 from ..model import Invalid, choice, param
 from .chart import LETTER, REDRAWN, cut, wrapped
 from .compare import HEAD, difference_map, layout, side_of
 from .develop import develop
 from .drawing import Drawing, Drawn
 
-METHODS = tuple(name for name, metric in METRICS.items() if metric.compares == "pictures")
+PICTURED = tuple(name for name, metric in METRICS.items() if metric.compares == "pictures")
 TITLE, ROW, LINE, MARGIN, GAP = (
     30,
     19,
@@ -35,7 +36,7 @@ class Least(Drawn):
     instrument = True
 
     tolerance: float = param(0.01, 1e-9, 10.0, "error of the sphere that is small enough", scale="log")
-    metric: str = choice("picture", METHODS, "measure of the sphere's error")
+    metric: str = choice("picture", PICTURED, "measure of the sphere's error")
 
     def shows(self, state):
         return (self, state.material, state.light, state.views["sphere"], state.look)
