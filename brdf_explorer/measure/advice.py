@@ -54,10 +54,9 @@ def rows(answer):
     """The ladders as rows of text, one cell for each of HEADS."""
     found = []
     for step in answer.steps:
-        reference = step.question.methods[step.question.top]
         told = effect(step, answer.metric).removeprefix("error ") if step.dropped else ""
         saving = times(step.saving) if step.saving else ""
-        names = step.question.ladder.name, step.chosen.name, reference.name
+        names = step.question.ladder.name, step.chosen.name, step.reference.name
         found.append((*names, told, saving, refused(step, answer)))
     return found
 
@@ -77,9 +76,8 @@ def sentences(answer):
         value, most = (amount(v, answer.metric) for v in (error.value, error.high))
         found.append(f"{metric.title[0].upper()}{metric.title[1:]}: {value}, surely below {most}; {tolerance}.")
     for step in dropped:
-        name = step.question.methods[step.question.top].name
         cheaper = f", {times(step.saving)} cheaper" if step.saving else ""
-        found.append(f"{step.chosen.name} instead of {name}: {effect(step, answer.metric)}{cheaper}.")
+        found.append(f"{step.chosen.name} instead of {step.reference.name}: {effect(step, answer.metric)}{cheaper}.")
     for step in answer.steps:
         if step.rejected:
             name, error, _ = step.rejected
@@ -104,7 +102,7 @@ def report(answer):
     steps = []
     for step in answer.steps:
         row = {"ladder": step.question.ladder.name, "question": step.question.ladder.question}
-        row |= {"in use": step.chosen.name, "reference": step.question.methods[step.question.top].name}
+        row |= {"in use": step.chosen.name, "reference": step.reference.name}
         row |= {"methods": [m.name for m in step.question.methods]}
         if step.dropped:
             row |= {"noise": step.change, "before": step.before} if step.question.noise else {"error": step.change}

@@ -107,7 +107,11 @@ class Step:
     @property
     def dropped(self):
         """Whether a cheaper method than the reference's is in use."""
-        return self.chosen is not self.question.methods[self.question.top]
+        return self.chosen is not self.reference
+
+    @property
+    def reference(self):
+        return self.question.methods[self.question.top]
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..measure.advice import HEADS, amount, rows, sentences, tone
+from ..measure.advice import EXACT, HEADS, amount, rows, sentences, tone
 from ..measure.error import METRICS
 from ..measure.least import at, least, questions, settled
 from ..model import Invalid, choice, param
@@ -16,13 +16,8 @@ from .develop import develop
 from .drawing import Drawing, Drawn
 
 PICTURED = tuple(name for name, metric in METRICS.items() if metric.compares == "pictures")
-TITLE, ROW, LINE, MARGIN, GAP = (
-    30,
-    19,
-    15,
-    14,
-    18,
-)  # points: the heading, a row, a line, beside the text, between columns
+TITLE, ROW, LINE = 30, 19, 15  # points: the heading, a row of the table, a line of words
+MARGIN, GAP = 14, 18  # points beside all, and between the table's columns
 WORDS, SMALL = 11.5, 10.5  # height of letters, points
 SIDE = 170  # points of a picture's side for which words give way
 SPARED = (2, 5, 4, 3)  # columns of the table that a narrow one does without, the first first
@@ -159,16 +154,10 @@ class Page:
         dropped = [s for s in answer.steps if s.dropped]
         faster = f"{answer.ratio.median:.3g} x" if answer.ratio and dropped else ""
         reduced = (f"Reduced, {faster} faster", f"Reduced, {faster}", "Reduced") if faster else ("Reduced",)
-        names = ("Reference",), reduced
-        methods = [
-            [
-                (s.question.ladder.name, (s.question.methods[s.question.top] if i == 0 else s.chosen).name)
-                for s in answer.steps
-            ]
-            for i in range(2)
-        ]
-        for box, sphere, name, used in zip(room.boxes[:2], spheres, names, methods, strict=True):
-            self.sphere(draw, box, sphere, name, "\n".join(f"{ladder}: {method}" for ladder, method in used))
+        used = [f"{s.question.ladder.name}: {s.reference.name}" for s in answer.steps]
+        self.sphere(draw, room.boxes[0], spheres[0], ("Reference",), "\n".join(used))
+        used = [f"{s.question.ladder.name}: {s.chosen.name}" for s in answer.steps]
+        self.sphere(draw, room.boxes[1], spheres[1], reduced, "\n".join(used))
         self.difference(draw, room.boxes[2], answer, spheres)
         return draw
 
@@ -192,12 +181,15 @@ class Page:
         targets = [s.target for s in spheres]
         pixels = [s.pixels() for s in spheres]
         largest = difference_map(self.gpu, draw, "least difference", box, targets, pixels)
-        percent = f"±{amount(largest, 'picture')}" if largest else "the reference is black"
-        words = (
-            f"Difference of luminance, {percent} of the mean, red: brighter",
-            f"Difference, {percent}",
-            f"Δ {percent}",
-        )
+        if largest is None or largest < EXACT:
+            words = ("Difference: none" if largest else "Difference: the reference is black", "Difference")
+        else:
+            spread = f"±{amount(largest, 'picture')}"
+            words = (
+                f"Difference of luminance, {spread} of the mean, red: brighter",
+                f"Difference, {spread}",
+                f"Δ {spread}",
+            )
         self.head(draw, box, words)
         covered = pixels[0][..., 3] > 0
         mean, other = (float(p[covered][:, :3].mean()) for p in pixels)
@@ -233,9 +225,8 @@ class Page:
     def words(self, draw, room, found, answer=None):
         """Write the table and the lines."""
         for i, line in enumerate(room.lines):
-            self.write(
-                draw, line, MARGIN, room.lift + LINE * (len(room.lines) - i - 0.5) + 6, "ink" if i < 2 else "muted"
-            )
+            y = room.lift + LINE * (len(room.lines) - i - 0.5) + 6
+            self.write(draw, line, MARGIN, y, "ink" if i < 2 else "muted")
         if room.table:
             self.table(draw, found, room.lift + room.table - 6, answer)
 
