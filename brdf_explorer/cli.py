@@ -537,9 +537,9 @@ def print_tradeoff(one):
     help="The reduced preset (.toml), a picture (.png, .svg, .pdf) or numbers (.json).",
 )
 def least(state, preset, tolerance, metric, as_json, size, output):
-    """Find the cheapest methods that are enough for PRESET in its scene.
+    """Find the cheapest methods that are enough for PRESET.
 
-    Of all combinations of methods the cheapest whose sphere is surely within the tolerance of the most accurate one's. The
+    In its scene: of all combinations the cheapest whose sphere is surely within the tolerance of the most accurate one's. The
     tolerance is a share of the mean, or for flip and itp their own number.
     """
     import json

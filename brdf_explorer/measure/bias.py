@@ -7,6 +7,7 @@ variance of the directions does not pass for bias.
 Work is done in generators that yield every few milliseconds, and whose result is what `return` gives.
 """
 
+from functools import cached_property
 from math import inf
 from typing import NamedTuple
 
@@ -188,8 +189,13 @@ class Bias:
     """Bias of models against a reference at Places: squares without the variance of the directions, by their two halves."""
 
     def __init__(self, state, size, seed):
-        self.places, self.reference = Places(state, *size, seed), state.model
+        self.state, self.size, self.seed = state, size, seed
+        self.reference = state.model
         self.found = {}  # model -> its radiance
+
+    @cached_property
+    def places(self):
+        return Places(self.state, *self.size, self.seed)
 
     def radiance(self, model):
         """That at the places, as a generator's result."""
