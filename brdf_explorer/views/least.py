@@ -96,7 +96,7 @@ class Sphere:
 
 class Room(NamedTuple):
     """Boxes and side of the pictures in pixels; in points how high the lines and the table stand, and the table's upper edge
-    above that, 0 for no table."""
+    above that, 0 for no table; the lines with their colours."""
 
     boxes: list
     side: int
@@ -204,8 +204,9 @@ class Page:
     def room(self, found, told):
         """The Room of a table of rows, of sentences as far as they leave the pictures room, and of those."""
         lines, ends = [], [0]
-        for sentence in told:
-            lines += wrapped([sentence], self.width - 2 * MARGIN, WORDS)
+        for i, sentence in enumerate(told):
+            color = "ink" if i < 2 else "muted"
+            lines += [(line, color) for line in wrapped([sentence], self.width - 2 * MARGIN, WORDS)]
             ends.append(len(lines))
         above = self.size[0], self.size[1] - TITLE * self.scale
         table = ROW * (len(found) + 1) + 16
@@ -224,9 +225,9 @@ class Page:
 
     def words(self, draw, room, found, answer=None):
         """Write the table and the lines."""
-        for i, line in enumerate(room.lines):
+        for i, (line, color) in enumerate(room.lines):
             y = room.lift + LINE * (len(room.lines) - i - 0.5) + 6
-            self.write(draw, line, MARGIN, y, "ink" if i < 2 else "muted")
+            self.write(draw, line, MARGIN, y, color)
         if room.table:
             self.table(draw, found, room.lift + room.table - 6, answer)
 
