@@ -144,10 +144,10 @@ class Model(Declared):
     pdf(wo, wi)      density of sample_f per solid angle, (...)
     sample_f(wo, u)  u (..., 2) in the unit square -> wi (..., 3), weight = f |cos theta_i| / pdf (..., 3);
                      a weight of 0 marks a direction below the horizon, which carries no energy
-    stochastic       True: f returns an unbiased estimate
     """
 
     stochastic = False
+    """True: f returns an unbiased estimate."""
 
     def slopes(self):
         """(alpha_x, alpha_y): scale of the half vectors' slopes over which f varies; grids and quadrature follow it."""

@@ -344,17 +344,19 @@ class Judge:
         return at(self.state, self.asked, tuple(mixed))
 
     def rough(self, combination):
-        """Bounds from few places in float64, and from pictures of the reference's f with the combination's noise."""
+        """Bounds from few places in float64, and from pictures of the reference's f with the combination's noise and model."""
         found = Estimate(0.0, 0.0, inf)
-        state = self.only(combination, noise=False)
-        if self.split and self.estimated(state):
-            bias, *_ = yield from self.pictured(combination, EARLY)
+        if self.split:
+            state = self.only(combination, noise=False)
+            if self.estimated(state):
+                bias, *_ = yield from self.apart(state, self.reference, EARLY)
+            else:
+                bias, _ = yield from self.biases[0].of(state.model)
             found = root(bias)
-        elif self.split:
-            bias, _ = yield from self.biases[0].of(state.model)
-            found = root(bias)
-            if surrounded(self.state.light) and found.low <= self.tolerance:
-                noise = yield from self.variance(self.only(combination, noise=True))
+            kept = (i if q.noise or q.remodels else q.top for q, i in zip(self.asked, combination, strict=True))
+            alike = at(self.state, self.asked, tuple(kept))
+            if noisy(alike) and found.low <= self.tolerance:
+                noise = yield from self.variance(alike)
                 found = root(bias, noise._replace(low=noise.low * SPARE**2))
         self.seen[combination] = found
         return found
@@ -386,13 +388,13 @@ class Judge:
         self.confirmed.add(combination)
         return found
 
-    def pictured(self, combination, passes=None):
+    def pictured(self, combination):
         """(bias squared, variance, both) of the combination's picture over the reference's mean's square, Estimates.
 
         The reference has the same samplers and numbers, so that their noise does not pass for bias.
         """
         state, reference = at(self.state, self.asked, combination), self.only(combination, noise=True)
-        return (yield from self.apart(state, reference, passes))
+        return (yield from self.apart(state, reference))
 
     def apart(self, state, reference, passes=None):
         """What `pictured` says, of two states."""
