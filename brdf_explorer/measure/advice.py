@@ -25,7 +25,12 @@ def figure(value):
 
 def times(found):
     """A ratio of times with its quartiles."""
-    return f"{found.median:.3g} x ({found.low:.3g} to {found.high:.3g})"
+    return f"{factor(found.median)} x ({factor(found.low)} to {factor(found.high)})"
+
+
+def factor(value):
+    """A number with three digits, or all those of a large one."""
+    return f"{value:.0f}" if value >= 1000 else f"{value:.3g}"
 
 
 def tone(brighter):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..measure.advice import EXACT, HEADS, amount, rows, sentences, tone
+from ..measure.advice import EXACT, HEADS, amount, factor, rows, sentences, tone
 from ..measure.error import METRICS
 from ..measure.least import at, least, questions, settled
 from ..model import Invalid, choice, param
@@ -152,7 +152,7 @@ class Page:
         room = self.room(rows(answer), sentences(answer))
         self.words(draw, room, rows(answer), answer)
         dropped = [s for s in answer.steps if s.dropped]
-        faster = f"{answer.ratio.median:.3g} x" if answer.ratio and dropped else ""
+        faster = f"{factor(answer.ratio.median)} x" if answer.ratio and dropped else ""
         reduced = (f"Reduced, {faster} faster", f"Reduced, {faster}", "Reduced") if faster else ("Reduced",)
         used = [f"{s.question.ladder.name}: {s.reference.name}" for s in answer.steps]
         self.sphere(draw, room.boxes[0], spheres[0], ("Reference",), "\n".join(used))
