@@ -42,10 +42,12 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     q = np.where(z_between, i, z)
     k = np.where(z_between, z, np.where(o_far, i, o))
 
-    corner = np.cross(p, q)
-    side = np.where(dot(k, corner) < 0, -1.0, 1.0)[:, None]
-    size = length(corner)[:, None]
-    corner = side * np.where(size > 1e-15, quotient(corner, size), [1.0, 0.0, 0.0])
+    u_x = np.cross(np.where(z_between | o_far, wo, wi), np.where(z_between, wi, z))
+    side = np.where(dot(np.where(z_between, z, np.where(o_far, wi, wo)), u_x) < 0, -1.0, 1.0)[:, None]
+    size = length(u_x)[:, None]
+    u_x = side * np.where(size > 1e-15, quotient(u_x, size), [1.0, 0.0, 0.0])
+    size_corner = length(u_x / stretch)
+    corner = u_x / stretch / size_corner[:, None]
     ahead = normalize(p + q)
     left = side * np.cross(ahead, corner)
     wide = atan2_precise(length(p + q), length(p - q))
@@ -61,16 +63,14 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     a = c[:, None] * np.cross(h, t)
     size_n = length(h / stretch)
     n_h = h / stretch / size_n[:, None]
-    in_ahead, in_left = dot(n_h, ahead), dot(n_h, left)
-    reach, rise = np.maximum(np.hypot(in_ahead, in_left), 1e-15), dot(n_h, corner)
-    omega_h = atan2_precise(in_left, in_ahead)
-    across = (in_ahead[:, None] * left - in_left[:, None] * ahead) / reach[:, None]
-    m_x, m_y = stretch * corner, stretch * across
-    t_x, a_x, t_y, a_y = dot(t, m_x), dot(a, m_x), dot(t, m_y), dot(a, m_y)
+    turned = side * np.cross(h, u_x)
+    rise = dot(n_h, corner)
+    reach = np.maximum(length(stretch * turned) / (stretch[:, 0] * stretch[:, 1] * size_n * size_corner), 1e-15)
+    omega_h = atan2_precise(dot(n_h, left), dot(n_h, ahead))
+    across, u_y = normalize(stretch * turned), normalize(stretch * stretch * turned)
 
-    size_m = 1 / size_n
-    x_unit, y_unit = size_m / length(m_x), size_m / length(m_y)
-    u_x, u_y = normalize(m_x), normalize(m_y)
+    y_size = length(stretch * across)
+    x_unit, y_unit = size_corner / size_n, 1 / (size_n * y_size)
     f_tx, f_ax, f_ty, f_ay = dot(t, u_x), dot(a, u_x), dot(t, u_y), dot(a, u_y)
     fall = np.log(D(z, alpha) / np.maximum(D(h, alpha), 1e-30))
     level = 1 + 0.5 * n + np.minimum(2 * kappa * (t[:, 2] ** 2 + a[:, 2] ** 2), fall)
@@ -79,7 +79,7 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     P = f_tx * f_tx + f_ax * f_ax - rho
     Q = f_tx * f_ty + f_ax * f_ay - rho * dot(u_x, u_y)
     S = f_ty * f_ty + f_ay * f_ay - rho
-    cone = (kappa > 0) & (P > 0)
+    cone = (kappa > 0) & (P > 0.3 * (f_tx * f_tx + f_ax * f_ax))
     det = f_tx * f_ay - f_ax * f_ty
     mixed_t = f_tx[:, None] * u_y - f_ty[:, None] * u_x
     mixed_a = f_ax[:, None] * u_y - f_ay[:, None] * u_x
@@ -143,8 +143,8 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
         m_3 = np.where(z_between, n_k, n_q)
         both = n_p * np.where(z_between, n_q, n_k)
         m2 = m_1 * m_1 + m_2 * m_2 + m_3 * m_3
-        off_t = sine * column(bent * t_y) - past * column(t_x)
-        off_a = sine * column(bent * a_y) - past * column(a_x)
+        off_t = sine * column(bent * y_size * f_ty) - past * column(f_tx / size_corner)
+        off_a = sine * column(bent * y_size * f_ay) - past * column(f_ax / size_corner)
         lobe = exp_precise(-2 * column(kappa) * (off_t * off_t + off_a * off_a) / m2)
         density = D(vec(m_1, m_2, m_3), alpha[:, None, :])
         inner = density * lobe * both * sine / (m2 * m2 * np.sqrt(m2))

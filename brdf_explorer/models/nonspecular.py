@@ -23,7 +23,7 @@ class Nonspecular(Model):
     eta, k, kappa and fresnel are of lobe.
     """
 
-    alpha: tuple = param((0.3, 0.3), 1e-4, 1.0, "roughness along x and y: scale of the facets' slopes", scale="log")
+    alpha: tuple = param((0.3, 0.3), 0.01, 1.0, "roughness along x and y: scale of the facets' slopes", scale="log")
     albedo: tuple = param((0.8, 0.8, 0.8), 0.0, 1.0, "share of the light that a facet reflects, linear RGB", color=True)
     kappa: float = param(100.0, 1.0, 1e6, "sharpness of a facet's lobe: about 1 / its variance in angle", scale="log")
     eta: tuple = param((0.143, 0.375, 1.442), 0.05, 6.0, "index of refraction at R, G, B, relative to the air's")

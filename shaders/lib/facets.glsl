@@ -32,10 +32,13 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa) {
   vec3 k = z_between ? z : off_o > off_i ? i : o;
 
   // the corner, and about it the rays: p . n = sin(wide + omega) sin psi, q . n = sin(wide - omega) sin psi
-  vec3 corner = cross(p, q);
-  float side = dot(k, corner) < 0.0 ? -1.0 : 1.0;
-  float size = length(corner);
-  corner = size > 1e-15 ? corner * (side / size) : vec3(side, 0.0, 0.0);
+  // as a direction of wm it is the product of the two before they are stretched, in which alpha does not cancel
+  vec3 u_x = cross(z_between || off_o > off_i ? wo : wi, z_between ? wi : z);
+  float side = dot(z_between ? z : off_o > off_i ? wi : wo, u_x) < 0.0 ? -1.0 : 1.0;
+  float size = length(u_x);
+  u_x = size > 1e-15 ? u_x * (side / size) : vec3(side, 0.0, 0.0);
+  float size_corner = length(u_x / stretch);
+  vec3 corner = u_x / stretch / size_corner;
   vec3 ahead = normalize(p + q);
   vec3 left = side * cross(ahead, corner);
   float wide = atan2_precise(length(p + q), length(p - q));
@@ -54,25 +57,23 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa) {
   t = normalize(t);
   vec3 a = c * cross(h, t);
   vec3 n_h = h / stretch / size_n;
-  vec2 in_plane = vec2(dot(n_h, ahead), dot(n_h, left));
-  float reach = max(length(in_plane), 1e-15), rise = dot(n_h, corner);
-  float omega_h = atan2_precise(in_plane.y, in_plane.x);
-  vec3 across = (in_plane.x * left - in_plane.y * ahead) / reach;
-  float size_m = 1.0 / size_n;  // of m_h, which is h over size_n
-  vec3 m_x = stretch * corner, m_y = stretch * across;
-  vec2 form_x = vec2(dot(t, m_x), dot(a, m_x)), form_y = vec2(dot(t, m_y), dot(a, m_y));
+  vec3 turned = side * cross(h, u_x);
+  float rise = dot(n_h, corner);
+  float reach = max(length(stretch * turned) / (stretch.x * stretch.y * size_n * size_corner), 1e-15);
+  float omega_h = atan2_precise(dot(n_h, left), dot(n_h, ahead));
+  vec3 across = normalize(stretch * turned), u_y = normalize(stretch * stretch * turned);
 
   // its cone, for x and y in units of x_unit and y_unit, so that all is of the size of 1 or of rho:
   // P x^2 + 2 Q x y + S y^2 - 2 rho (g_x x + g_y y) - rho <= 0, and where that has a solution x, A y^2 + 2 B y + C >= 0
-  float x_unit = size_m / length(m_x), y_unit = size_m / length(m_y);
-  vec3 u_x = normalize(m_x), u_y = normalize(m_y);
+  float y_size = length(stretch * across);
+  float x_unit = size_corner / size_n, y_unit = 1.0 / (size_n * y_size);
   vec2 f_x = vec2(dot(t, u_x), dot(a, u_x)), f_y = vec2(dot(t, u_y), dot(a, u_y));
   float level = 1.0 + 0.5 * float(nodes());
   level += min(2.0 * kappa * (t.z * t.z + a.z * a.z), log_precise(D(z, alpha) / max(D(h, alpha), 1e-30)));
   float rho = level / max(2.0 * kappa, 1e-3);
   float u_xy = dot(u_x, u_y), g_x = dot(u_x, h), g_y = dot(u_y, h);
   float P = dot(f_x, f_x) - rho, Q = dot(f_x, f_y) - rho * u_xy, S = dot(f_y, f_y) - rho;
-  bool cone = kappa > 0.0 && P > 0.0;
+  bool cone = kappa > 0.0 && P > 0.3 * dot(f_x, f_x);  // a wider one ends where rounding says
   float det = f_x.x * f_y.y - f_x.y * f_y.x;
   vec3 mixed_t = f_x.x * u_y - f_y.x * u_x, mixed_a = f_x.y * u_y - f_y.y * u_x, normal = cross(u_x, u_y);
   float A = rho * (dot(mixed_t, mixed_t) + dot(mixed_a, mixed_a)) - det * det - rho * rho * dot(normal, normal);
@@ -129,7 +130,7 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa) {
       float both = z_between ? n_p * n_q : n_p * n_k;  // (o . n) (i . n)
       vec3 m = stretch * n;
       float m2 = dot(m, m);
-      vec2 off = sine * bent * form_y - past * form_x;  // t and a of m
+      vec2 off = sine * bent * y_size * f_y - past / size_corner * f_x;  // t and a of m
       float lobe = exp_precise(-2.0 * kappa * dot(off, off) / m2);
       part += inner.y * D(m, alpha) * lobe * both * sine / (m2 * m2 * sqrt(m2));
     }
