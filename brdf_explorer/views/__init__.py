@@ -2,6 +2,7 @@
 
 from .chart import Chart
 from .compare import Compare
+from .facets import Facets
 from .factors import Factors
 from .hemisphere import Hemisphere
 from .lobe import Lobe
@@ -13,5 +14,5 @@ from .stability import Stability
 
 VIEWS = {
     view.name(): view
-    for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Sampling, Compare, Chart, Stability, Microsurface)
+    for view in (Sphere, Lobe, Polar, Factors, Facets, Hemisphere, Sampling, Compare, Chart, Stability, Microsurface)
 }
