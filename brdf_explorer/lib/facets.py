@@ -18,16 +18,19 @@ BLOCK = 1024
 """Pairs of directions at a time, whose nodes fit into a cache."""
 
 
-def facets(wo, wi, alpha, kappa, D, node_scale, nodes, gauss):
-    """The integral (...) for wo and wi (..., 3); D and the functions after it are those of the slots ndf, facets and gauss."""
+def facets(wo, wi, alpha, kappa, node_scale, nodes, D, gauss):
+    """The integral (...) for wo and wi (..., 3).
+
+    node_scale: of the slot facets; nodes: the number of those that gauss gives; D and gauss: functions of the slots ndf and gauss.
+    """
     shape = np.broadcast_shapes(wo.shape[:-1], wi.shape[:-1], np.shape(alpha)[:-1], np.shape(kappa))
     columns = [np.broadcast_to(x, (*shape, n)).reshape(-1, n) for x, n in ((wo, 3), (wi, 3), (alpha, 2))]
     kappa = np.broadcast_to(kappa, shape).ravel()
-    out, rule = np.empty(len(kappa)), (nodes(), gauss(np.arange(nodes())))
+    out, rule = np.empty(len(kappa)), (nodes, gauss(np.arange(nodes)))
     for start in range(0, len(kappa), BLOCK):
         at = slice(start, start + BLOCK)
         with np.errstate(under="ignore"):  # in the tails of a density
-            out[at] = _block(*(c[at] for c in columns), kappa[at], D, node_scale(), *rule)
+            out[at] = _block(*(c[at] for c in columns), kappa[at], D, node_scale, *rule)
     return out.reshape(shape)
 
 

@@ -2,6 +2,4 @@
 1 / (1.5 alpha) they lie most evenly, which makes the error of 8 x 8 nodes a third of what it is without.
 """
 
-
-def node_scale():
-    return 1.5
+NODE_SCALE = 1.5

@@ -2,6 +2,4 @@
 1 / alpha their density is even, so its nodes need no other scale.
 """
 
-
-def node_scale():
-    return 1.0
+NODE_SCALE = 1.0

@@ -5,11 +5,10 @@ import numpy as np
 from .common import vec
 
 
-def nodes():
-    return 12
+NODES = 12
 
 
 def gauss(i):
-    """Node and weight (..., 2), i in [0, 12)."""
-    x, weight = np.polynomial.legendre.leggauss(12)
+    """Node and weight (..., 2), i in [0, NODES)."""
+    x, weight = np.polynomial.legendre.leggauss(NODES)
     return vec(x[i], weight[i])

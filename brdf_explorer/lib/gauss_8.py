@@ -5,11 +5,10 @@ import numpy as np
 from .common import vec
 
 
-def nodes():
-    return 8
+NODES = 8
 
 
 def gauss(i):
-    """Node and weight (..., 2), i in [0, 8)."""
-    x, weight = np.polynomial.legendre.leggauss(8)
+    """Node and weight (..., 2), i in [0, NODES)."""
+    x, weight = np.polynomial.legendre.leggauss(NODES)
     return vec(x[i], weight[i])

@@ -3,8 +3,6 @@
 For models with the slots of `microfacet`: alpha, ndf, smith, shadowing, fresnel, eta and k.
 """
 
-from functools import cache
-
 import numpy as np
 
 from ..lib import facet_lobe, fresnel_one, slot
@@ -32,21 +30,20 @@ def mirrors(model):
     return MODELS["microfacet"](**{name: getattr(model, name) for name in names})
 
 
-@cache
-def _rule():
-    x, weight = np.polynomial.legendre.leggauss(NODES)
-    return (lambda: NODES), (lambda i: vec(x[i], weight[i]))
+def gauss(i):
+    """Node and weight (..., 2), as those of the slot gauss."""
+    return vec(*(part[i] for part in np.polynomial.legendre.leggauss(NODES)))
 
 
 def sharpened(model, kappa, wo, wi, reflectance=True):
     """f (..., 3) of facets of this model whose lobes have the sharpness kappa; without F, as the lecture prints it, if asked."""
     alpha = np.array(model.alpha)
-    D, node_scale = slot("ndf", model.ndf).D, slot("facets", model.ndf).node_scale
+    D, node_scale = slot("ndf", model.ndf).D, slot("facets", model.ndf).NODE_SCALE
     Lambda, G2 = slot("smith", model.ndf, model.smith).Lambda, slot("shadowing", model.shadowing).G2
     F = slot("fresnel", model.fresnel).F if reflectance else fresnel_one.F
 
     def value(wo, wi):
-        seen = facets(wo, wi, alpha, kappa, D, node_scale, *_rule())
+        seen = facets(wo, wi, alpha, kappa, node_scale, NODES, D, gauss)
         scale = facet_lobe.facet_scale(cos_facet(wo, wi), None, np.array(model.eta), np.array(model.k), kappa, F)
         G = G2(wo, wi, Lambda(wo, alpha), Lambda(wi, alpha))
         return scale * (G * seen / (split(wo)[2] * split(wi)[2]))[..., None]

@@ -81,9 +81,9 @@ class Nonspecular(Model):
             wi,
             alpha,
             facet.facet_sharpness(self.kappa),
+            slot("facets", self.ndf).NODE_SCALE,
+            gauss.NODES,
             slot("ndf", self.ndf).D,
-            slot("facets", self.ndf).node_scale,
-            gauss.nodes,
             gauss.gauss,
         )
         F = slot("fresnel", self.fresnel).F

@@ -19,14 +19,13 @@
 #include "lib/common.glsl"
 #include "lib/transcendental.glsl"
 
-// Whoever includes this has these: of the slots ndf, facets and gauss.
+// Whoever includes this has these, of the slots ndf and gauss.
 float D(vec3 wm, vec2 alpha);
-float node_scale();
-int nodes();
 vec2 gauss(int i);
 
-float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa) {
-  vec3 stretch = vec3(node_scale() * alpha, 1.0);
+// node_scale: of the slot facets; nodes: the number of those that gauss gives, NODES.
+float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int nodes) {
+  vec3 stretch = vec3(node_scale * alpha, 1.0);
   float size_o = length(stretch * wo), size_i = length(stretch * wi);
   vec3 o = stretch * wo / size_o, i = stretch * wi / size_i, z = vec3(0.0, 0.0, 1.0);
   float off_oi = dot(o - i, o - i), off_o = dot(o - z, o - z), off_i = dot(i - z, i - z);
@@ -72,7 +71,7 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa) {
   float y_size = length(stretch * across);
   float x_unit = size_corner / size_n, y_unit = 1.0 / (size_n * y_size);
   vec2 f_x = vec2(dot(t, u_x), dot(a, u_x)), f_y = vec2(dot(t, u_y), dot(a, u_y));
-  float level = 1.0 + 0.5 * float(nodes());
+  float level = 1.0 + 0.5 * float(nodes);
   level += min(2.0 * kappa * (t.z * t.z + a.z * a.z), log_precise(D(z, alpha) / max(D(h, alpha), 1e-30)));
   float rho = level / max(2.0 * kappa, 1e-3);
   float u_xy = dot(u_x, u_y), g_x = dot(u_x, h), g_y = dot(u_y, h);
@@ -100,7 +99,7 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa) {
   float p_across = dot(p, across), q_across = dot(q, across), k_across = dot(k, across);
 
   float sum = 0.0;
-  for (int j = 0; j < nodes(); ++j) {
+  for (int j = 0; j < nodes; ++j) {
     vec2 outer = gauss(j);
     float turn = 0.5 * (low + high) + 0.5 * (high - low) * outer.x;  // omega - omega_h
     float omega = omega_h + turn;
@@ -123,7 +122,7 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa) {
     }
     if (last <= first) continue;
     float part = 0.0;
-    for (int l = 0; l < nodes(); ++l) {
+    for (int l = 0; l < nodes; ++l) {
       vec2 inner = gauss(l);
       float step = 0.5 * (first + last) + 0.5 * (last - first) * inner.x;  // psi - psi_h
       float sine = sin(psi_h + step);

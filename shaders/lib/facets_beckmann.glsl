@@ -2,6 +2,6 @@
 // 1 / (1.5 alpha) they lie most evenly, which makes the error of 8 x 8 nodes a third of what it is without.
 #include "lib/ndf_beckmann.glsl"
 
-float node_scale() { return 1.5; }
+const float NODE_SCALE = 1.5;
 
 #include "lib/facets.glsl"

@@ -2,6 +2,6 @@
 // their density is even, so its nodes need no other scale.
 #include "lib/ndf_ggx.glsl"
 
-float node_scale() { return 1.0; }
+const float NODE_SCALE = 1.0;
 
 #include "lib/facets.glsl"

@@ -4,7 +4,7 @@ const vec2 GAUSS[8] = vec2[8](
     vec2(0.6178762444, 0.1495959888), vec2(0.7554044084, 0.1246289713), vec2(0.8656312024, 0.09515851168),
     vec2(0.9445750231, 0.06225352394), vec2(0.989400935, 0.02715245941));
 
-int nodes() { return 16; }
+const int NODES = 16;
 
 // Node and weight, i in [0, 16).
 vec2 gauss(int i) {

@@ -15,7 +15,7 @@
 vec3 f(vec3 wo, vec3 wi) {
   if (wo.z <= HORIZON || wi.z <= HORIZON) return vec3(0.0);
   float G = G2(wo, wi, Lambda(wo, material.alpha), Lambda(wi, material.alpha));
-  float seen = facets(wo, wi, material.alpha, facet_sharpness(material.kappa));
+  float seen = facets(wo, wi, material.alpha, facet_sharpness(material.kappa), NODE_SCALE, NODES);
   vec3 scale = facet_scale(cos_facet(wo, wi), material.albedo, material.eta, material.k, material.kappa);
   return scale * (G * seen / (wo.z * wi.z));
 }
