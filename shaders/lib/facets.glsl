@@ -12,7 +12,7 @@
 //
 // The relative error for cosines above 0.1, alpha from 0.01 and a facet's lobe within three of its widths, by nodes; median, largest:
 //               8                12               16
-//   kappa = 0   2e-5, 9e-4       3e-6, 2e-4       3e-7, 7e-5    GGX
+//   kappa = 0   2e-5, 1e-3       3e-6, 2e-4       3e-7, 7e-5    GGX
 //               8e-3, 2e-2       4e-4, 2e-3       2e-5, 1e-4    Beckmann
 //   a lobe      4e-3, 0.3        4e-4, 0.1        5e-5, 0.03    both; largest where kappa alpha^2 is near 0.1
 // Of a lobe much sharper than the facets' slopes the cut leaves out exp(-1 - nodes / 2): 7e-3, 9e-4, 1.2e-4.
