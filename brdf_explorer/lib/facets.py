@@ -140,9 +140,7 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
         past = np.sin(step) * column(size_h / reach)
         n_p, n_q = column(flat_p) * sine, column(flat_q) * sine
         n_k = np.maximum(column(flat_k) * sine - past * column(k_corner), 0.0)
-        m_1, m_2 = (
-            column(stretch[:, j]) * (cosine * column(corner[:, j]) + sine * column(ray[:, j])) for j in (0, 1)
-        )
+        m_1, m_2 = (column(stretch[:, j]) * (cosine * column(corner[:, j]) + sine * column(ray[:, j])) for j in (0, 1))
         m_3 = np.where(z_between, n_k, n_q)
         both = n_p * np.where(z_between, n_q, n_k)
         m2 = m_1 * m_1 + m_2 * m_2 + m_3 * m_3

@@ -3,6 +3,8 @@
 For models with the slots of `microfacet`: alpha, ndf, smith, shadowing, fresnel, eta and k.
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 from ..lib import facet_lobe, fresnel_one, slot
@@ -56,9 +58,15 @@ def differences(model, theta_o, phi_o=0.0, kappas=SHARPNESS):
 
     theta_o, phi_o: radians. Directions lie about the mirror direction, as close as alpha, and up to 80 degrees.
     """
+    return np.array([difference(mirrors(model), theta_o, phi_o, float(k)) for k in kappas])
+
+
+@lru_cache(512)
+def difference(model, theta_o, phi_o, kappa):
+    """One of the `differences`, of a microfacet model."""
     near = np.tan(np.linspace(0.0, 1.2, DIRECTIONS)) * max(model.alpha)
     theta = np.concatenate([-theta_o - near[::-1], -theta_o + near[1:]])
     theta = theta[np.abs(theta) < np.radians(80)]
     wo, wi = direction(theta_o, phi_o), direction(theta, phi_o)
-    exact = mirrors(model).f(wo, wi)
-    return np.array([np.max(np.abs(sharpened(model, k, wo, wi) - exact)) for k in kappas]) / exact.max()
+    exact = model.f(wo, wi)
+    return float(np.max(np.abs(sharpened(model, kappa, wo, wi) - exact)) / exact.max())

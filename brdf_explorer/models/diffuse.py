@@ -15,7 +15,9 @@ class Diffuse(Model):
     """Diffuse reflection by one of several laws. Leaves out light that leaves the body elsewhere."""
 
     albedo: tuple = param((0.8, 0.8, 0.8), 0.0, 1.0, "share of the light that a facet reflects, linear RGB", color=True)
-    sigma: float = param(0.3, 0.0, 1.0, "standard deviation of the facets' angle of slope, for oren_nayar and facets", unit="rad")
+    sigma: float = param(
+        0.3, 0.0, 1.0, "standard deviation of the facets' angle of slope, for oren_nayar and facets", unit="rad"
+    )
     r: float = param(0.5, 0.0, 1.0, "roughness of eon, Fujii's: 0 is Lambert's law")
     diffuse: str = choice("lambert", ("lambert", "oren_nayar", "facets", "eon", "lambert_sphere"), "law of reflection")
 

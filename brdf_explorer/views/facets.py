@@ -1,6 +1,7 @@
 """Facets that are no mirrors: f along the plane of incidence as their lobes sharpen, and how it becomes Torrance and Sparrow's."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -16,11 +17,22 @@ from .picture import Curves
 
 STEPS = (10.0, 100.0, 1e3, 1e4)
 """The sharpnesses whose curves are always there."""
-ANGLES = 181
+ANGLES = 121
 """Directions of a curve, even ones; as many more lie about the mirror direction."""
 LIMIT = 1e6
 """The sharpness that stands for the limit in the words."""
 LEFT = 54  # points left of the curves, for ticks
+
+
+@lru_cache(64)
+def curve(model, kappa, theta_o, phi_o):
+    """theta (n,) in radians and the luminance (n,) of a microfacet model's f with lobes for mirrors; theta_o, phi_o: degrees."""
+    theta_o, phi = np.radians([theta_o, phi_o])
+    near = 0.3 * max(model.alpha) * np.tan(np.linspace(-1.4, 1.4, ANGLES)) - theta_o
+    theta = np.unique(np.concatenate([np.radians(np.linspace(-89.8, 89.8, ANGLES)), near]))
+    theta = theta[np.abs(theta) < np.radians(89.9)]
+    wo, wi = direction(theta_o, phi), direction(theta, phi)
+    return theta, luminance(model.f(wo, wi) if kappa == np.inf else sharpened(model, kappa, wo, wi))
 
 
 @dataclass(frozen=True)
@@ -38,15 +50,9 @@ class Facets(Drawn):
 
     def curves(self, state):
         """theta (n,) in radians, positive on the viewer's side, and {kappa: luminance of f (n,)}, mirrors at infinity."""
-        theta_o, phi = np.radians([state.directions.theta_o, state.directions.phi_o])
-        near = np.linspace(-1.4, 1.4, ANGLES)
-        theta = np.concatenate([np.radians(np.linspace(-89.8, 89.8, ANGLES)), 0.3 * max(state.model.alpha) * np.tan(near)])
-        theta[ANGLES:] -= theta_o
-        theta = np.unique(theta[np.abs(theta) < np.radians(89.9)])
-        wo, wi = direction(theta_o, phi), direction(theta, phi)
-        kappas = sorted({*STEPS, self.kappa})
-        found = {k: luminance(sharpened(state.model, k, wo, wi)) for k in kappas}
-        return theta, found | {np.inf: luminance(mirrors(state.model).f(wo, wi))}
+        model, at = mirrors(state.model), (state.directions.theta_o, state.directions.phi_o)
+        found = {k: curve(model, k, *at)[1] for k in sorted({*STEPS, self.kappa})}
+        return curve(model, np.inf, *at)[0], found | {np.inf: curve(model, np.inf, *at)[1]}
 
     def table_of(self, gpu, state):
         """The curves as Curves over theta in degrees."""
@@ -67,8 +73,15 @@ class Facets(Drawn):
         theta, found = self.curves(state)
         theta_o, phi = np.radians([state.directions.theta_o, state.directions.phi_o])
         kappas = np.unique(np.append(SHARPNESS, self.kappa))
+        yield self.drawing(draw, state, theta, found, kappas, None), "", False
         off = differences(state.model, theta_o, phi, kappas)
-        here = float(off[kappas == self.kappa][0])
+        here = number(float(off[kappas == self.kappa][0]), 3)
+        draw = self.drawing(Drawing(size, scale, state.look.theme), state, theta, found, kappas, off)
+        yield draw, f"largest difference at κ = {self.kappa:.3g}: {here} of the peak", True
+
+    def drawing(self, draw, state, theta, found, kappas, off):
+        """Everything drawn; off: the differences for the kappas, or None while they are not known."""
+        (width, height), scale = draw.size, draw.scale
         lines = self.words(state, (width / scale - 24))
         legend = self.legend(found, draw)
         beside = width >= 640 * scale
@@ -88,16 +101,16 @@ class Facets(Drawn):
             boxes = (left, middle + foot, end, top), (left, foot, end, middle - 28 * scale)
         if min(box[3] - box[1] for box in boxes) < 30 * scale or right - left < 100 * scale:
             draw.text("No room for the curves", (width / 2, height / 2), "muted")
-            yield draw, "", True
-            return
+            return draw
         for i, line in enumerate(lines):
             draw.text(line, (12 * scale, height - (16 + 18 * i) * scale), "ink", (0.0, 0.5), 12.0)
         for text, color, x, row in rows:
             at = (left + x, height - (16 + 18 * len(lines) + 10 + 17 * row) * scale)
             draw.text(text, at, color, (0.0, 0.5), 11.5)
         self.lobes(draw, boxes[0], theta, found, state.directions.theta_o)
-        self.fall(draw, boxes[1], kappas, off)
-        yield draw, f"largest difference at κ = {self.kappa:.3g}: {number(here, 3)} of the peak", True
+        if off is not None:
+            self.fall(draw, boxes[1], kappas, off)
+        return draw
 
     def legend(self, found, draw):
         """[(words, colour role or number)] of the curves."""
