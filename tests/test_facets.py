@@ -1,4 +1,6 @@
-"""Facets that are no mirrors: the rule against the integral as the lecture prints it, its limits, and what the view says of them."""
+"""Facets that are no mirrors: the rule against the integral as the lecture prints it, its limits, and what the view says of
+them.
+"""
 
 from dataclasses import replace
 

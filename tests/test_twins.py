@@ -26,8 +26,8 @@ WORST = 1e-3
 CHUNKS = sorted(p.stem for p in (SHADERS / "lib").glob("*.glsl"))
 
 BY_QUADRATURE = 2e-3
-"""COMMON for SLOW models, of values from 1e-4 of the largest on: rounding moves the nodes, so values differ by a share of the rule's
-own error, and where two planes are as far apart as two others it may choose the other two."""
+"""COMMON for SLOW models, of values from 1e-4 of the largest on: rounding moves the nodes, so values differ by a share of the
+rule's own error, and where two planes are as far apart as two others it may choose the other two."""
 NEEDS = {  # what stands before a chunk that declares functions of other slots
     "facets": ("ndf_ggx", "gauss_8"),
     "facets_ggx": ("gauss_8",),

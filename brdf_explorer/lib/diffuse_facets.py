@@ -1,9 +1,9 @@
-"""Slot diffuse: Lambertian facets with Gaussian slopes that meet light once, the lecture's integral as in the model nonspecular, with
-the height-correlated G of Smith's heights (Heitz 2014, Eq. 99).
+"""Slot diffuse: Lambertian facets with Gaussian slopes that meet light once, the lecture's integral as in the model
+nonspecular, with the height-correlated G of Smith's heights (Heitz 2014, Eq. 99).
 
 sigma is the standard deviation of a facet's angle of slope as in oren_nayar: Beckmann's alpha is sqrt(2) tan sigma. By 12 x 12
-nodes: 4e-4 of f, 2e-3 at most. Leaves out light that meets several facets, so white facets lose 0.010 of the light
-at sigma = 0.1, 0.08 at 0.3, 0.18 at 0.5 and 0.52 at 1, seen along the normal.
+nodes: 4e-4 of f, 2e-3 at most. Leaves out light that meets several facets, so white facets lose 0.010 of the light at sigma =
+0.1, 0.08 at 0.3, 0.18 at 0.5 and 0.52 at 1, seen along the normal.
 """
 
 import numpy as np

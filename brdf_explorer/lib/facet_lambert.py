@@ -1,8 +1,8 @@
 """Slot facet: f_mf of a facet that reflects as Lambert's law says, albedo / pi.
 
-All files of the slot define four functions. facet_sharpness is the kappa of the integral in facets.py; facet_scale is what f_mf is at
-the peak of that lobe, 1/sr; facet_wi draws a direction to the light, which may lie below the horizon, and facet_pdf is its density
-per solid angle. Their last arguments are functions of the slots fresnel, ndf and sampling.
+All files of the slot define four functions. facet_sharpness is the kappa of the integral in facets.py; facet_scale is what
+f_mf is at the peak of that lobe, 1/sr; facet_wi draws a direction to the light, which may lie below the horizon, and facet_pdf
+is its density per solid angle. Their last arguments are functions of the slots fresnel, ndf and sampling.
 """
 
 import numpy as np

@@ -1,12 +1,12 @@
-"""Slot facet: f_mf is a lobe about the facet's mirror direction R(wm, wo), von Mises and Fisher's density of sharpness kappa, times
-Fresnel's reflectance F(c), over c = |wo + wi| / 2, the cosine at a facet that would mirror wo to wi.
+"""Slot facet: f_mf is a lobe about the facet's mirror direction R(wm, wo), von Mises and Fisher's density of sharpness kappa,
+times Fresnel's reflectance F(c), over c = |wo + wi| / 2, the cosine at a facet that would mirror wo to wi.
 
     f_mf = F(c) / c kappa / (2 pi (1 - exp(-2 kappa))) exp(kappa (wi . R - 1))
 
-Over c and not over wi . wm as the lecture's delta: where wi = R both are the same, and this f_mf is reciprocal. As kappa grows it
-becomes F delta(wi - R) / (wi . wm), and f that of Torrance and Sparrow; without F the limit is D G / (4 cos cos). Leaves out the light
-that the lobe sends below the facet: seen along its normal a facet reflects 0.46 of the light at kappa = 1, 0.92 at 10 and 0.992 at
-100; at no angle more than 1.
+Over c and not over wi . wm as the lecture's delta: where wi = R both are the same, and this f_mf is reciprocal. As kappa grows
+it becomes F delta(wi - R) / (wi . wm), and f that of Torrance and Sparrow; without F the limit is D G / (4 cos cos). Leaves
+out the light that the lobe sends below the facet: seen along its normal a facet reflects 0.46 of the light at kappa = 1, 0.92
+at 10 and 0.992 at 100; at no angle more than 1.
 """
 
 import numpy as np

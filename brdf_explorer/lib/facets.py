@@ -2,9 +2,9 @@
 
     integral of D(wm) (wo . wm)+ (wi . wm)+ exp(kappa (wi . R(wm, wo) - wi . R(h, wo))) d wm,
 
-a lobe of sharpness kappa about the facet's mirror direction R, with h the half vector, where the exponent is 0, its largest. With
-kappa = 0 the facets are Lambertian. The exponent is -2 kappa (t^2 + c^2 a^2): t and a are wm's components along wo - wi and along
-wo x wi, c is wo . h. So it is the same for wo and wi exchanged, and so are the nodes: the rule is reciprocal.
+a lobe of sharpness kappa about the facet's mirror direction R, with h the half vector, where the exponent is 0, its largest.
+With kappa = 0 the facets are Lambertian. The exponent is -2 kappa (t^2 + c^2 a^2): t and a are wm's components along wo - wi
+and along wo x wi, c is wo . h. So it is the same for wo and wi exchanged, and so are the nodes: the rule is reciprocal.
 
 shaders/lib/facets.glsl says what the nodes are, and how large the error.
 """
@@ -21,7 +21,7 @@ BLOCK = 1024
 def facets(wo, wi, alpha, kappa, node_scale, nodes, D, gauss):
     """The integral (...) for wo and wi (..., 3).
 
-    node_scale: of the slot facets; nodes: the number of those that gauss gives; D and gauss: functions of the slots ndf and gauss.
+    node_scale: of the slot facets; nodes: how many gauss gives; D and gauss: functions of the slots ndf and gauss.
     """
     shape = np.broadcast_shapes(wo.shape[:-1], wi.shape[:-1], np.shape(alpha)[:-1], np.shape(kappa))
     columns = [np.broadcast_to(x, (*shape, n)).reshape(-1, n) for x, n in ((wo, 3), (wi, 3), (alpha, 2))]
@@ -51,14 +51,13 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     u_x = side * np.where(size > 1e-15, quotient(u_x, size), [1.0, 0.0, 0.0])
     size_corner = length(u_x / stretch)
     corner = u_x / stretch / size_corner[:, None]
-    ahead = normalize(p + q)
-    left = side * np.cross(ahead, corner)
-    wide = atan2_precise(length(p + q), length(p - q))
     k_corner = np.maximum(dot(k, corner), 0.0)
 
-    c = 0.5 * length(wo + wi)
-    h = (wo + wi) / (2 * c)[:, None]
-    t = wo - wi
+    both_ways, t = wo + wi, wo - wi
+    tilt = np.where(dot(t, t) > dot(both_ways, both_ways), quotient(dot(both_ways, t), dot(t, t)), 0.0)
+    both_ways = both_ways - tilt[:, None] * t
+    c = 0.5 * length(both_ways)
+    h = both_ways / (2 * c)[:, None]
     t = t - dot(t, h)[:, None] * h
     other = np.where(np.abs(h[:, :1]) < 0.7, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
     t = np.where(dot(t, t)[:, None] < 1e-12, other - dot(other, h)[:, None] * h, t)
@@ -69,9 +68,9 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     turned = side * np.cross(h, u_x)
     rise = dot(n_h, corner)
     reach = np.maximum(length(stretch * turned) / (stretch[:, 0] * stretch[:, 1] * size_n * size_corner), 1e-15)
-    omega_h = atan2_precise(dot(n_h, left), dot(n_h, ahead))
     across, u_y = normalize(stretch * turned), normalize(stretch * stretch * turned)
 
+    ray_h = side * np.cross(corner, across)
     y_size = length(stretch * across)
     x_unit, y_unit = size_corner / size_n, 1 / (size_n * y_size)
     f_tx, f_ax, f_ty, f_ay = dot(t, u_x), dot(a, u_x), dot(t, u_y), dot(a, u_y)
@@ -90,7 +89,13 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     A = rho * (dot(mixed_t, mixed_t) + dot(mixed_a, mixed_a)) - det * det - rho * rho * dot(normal, normal)
     B = rho * (P * g_y - Q * g_x)
     C = rho * (rho * g_x * g_x + P)
-    low, high = -wide - omega_h, wide - omega_h
+    o_h, i_h, z_h = c / (size_o * size_n), c / (size_i * size_n), h[:, 2] / size_n
+    z_mid, o_mid = z_between[:, 0], o_far[:, 0]
+    p_h = np.where(z_mid | o_mid, o_h, i_h)
+    q_h = np.where(z_mid, i_h, z_h)
+    k_h = np.where(z_mid, z_h, np.where(o_mid, i_h, o_h))
+    p_across, q_across, k_across = dot(p, across), dot(q, across), dot(k, across)
+    low, high = -atan2_precise(p_h, reach * p_across), atan2_precise(q_h, -reach * q_across)
     cut = cone & (B * B > A * C)
     both = np.sqrt(np.where(cut, B * B - A * C, 0.0)) + np.abs(B)
     near = np.where(cut, atan2_precise(C * y_unit, both * reach), np.pi)
@@ -98,23 +103,15 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     low = np.maximum(low, np.where(B > 0, -near, -far))
     high = np.minimum(high, np.where(B > 0, far, near))
 
-    o_h, i_h, z_h = c / (size_o * size_n), c / (size_i * size_n), h[:, 2] / size_n
-    z_mid, o_mid = z_between[:, 0], o_far[:, 0]
-    p_h = np.where(z_mid | o_mid, o_h, i_h)
-    q_h = np.where(z_mid, i_h, z_h)
-    k_h = np.where(z_mid, z_h, np.where(o_mid, i_h, o_h))
-    p_across, q_across, k_across = dot(p, across), dot(q, across), dot(k, across)
-
     x, weight = split(gauss)
     P = np.where(cone, P, 1.0)
     total = np.zeros(len(wo))
     column = lambda v: v[:, None]  # noqa: E731
     for outer, share in zip(x, weight, strict=True):
-        turn = 0.5 * (low + high) + 0.5 * (high - low) * outer
-        omega = omega_h + turn
-        ray = np.cos(omega)[:, None] * ahead + np.sin(omega)[:, None] * left
+        omega = 0.5 * (low + high) + 0.5 * (high - low) * outer
+        bent, straight = np.sin(omega), np.cos(omega)
+        ray = straight[:, None] * ray_h + bent[:, None] * across
         psi_k = atan2_precise(k_corner, -dot(k, ray))
-        bent, straight = np.sin(turn), np.cos(turn)
         flat_p = np.maximum(straight / reach * p_h + bent * p_across, 0.0)
         flat_q = np.maximum(straight / reach * q_h + bent * q_across, 0.0)
         flat_k = straight / reach * k_h + bent * k_across

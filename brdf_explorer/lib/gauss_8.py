@@ -4,7 +4,6 @@ import numpy as np
 
 from .common import vec
 
-
 NODES = 8
 
 

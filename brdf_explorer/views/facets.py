@@ -1,4 +1,6 @@
-"""Facets that are no mirrors: f along the plane of incidence as their lobes sharpen, and how it becomes Torrance and Sparrow's."""
+"""Facets that are no mirrors: f along the plane of incidence as their lobes sharpen, and how it becomes Torrance and
+Sparrow's.
+"""
 
 from dataclasses import dataclass
 from functools import lru_cache

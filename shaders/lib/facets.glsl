@@ -34,24 +34,22 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
   vec3 q = z_between ? i : z;
   vec3 k = z_between ? z : off_o > off_i ? i : o;
 
-  // the corner, and about it the rays: p . n = sin(wide + omega) sin psi, q . n = sin(wide - omega) sin psi
-  // as a direction of wm it is the product of the two before they are stretched, in which alpha does not cancel
+  // The corner: as a direction of wm it is the product of the two before they are stretched, in which alpha does not cancel
   vec3 u_x = cross(z_between || off_o > off_i ? wo : wi, z_between ? wi : z);
   float side = dot(z_between ? z : off_o > off_i ? wi : wo, u_x) < 0.0 ? -1.0 : 1.0;
   float size = length(u_x);
   u_x = size > 1e-15 ? u_x * (side / size) : vec3(side, 0.0, 0.0);
   float size_corner = length(u_x / stretch);
   vec3 corner = u_x / stretch / size_corner;
-  vec3 ahead = normalize(p + q);
-  vec3 left = side * cross(ahead, corner);
-  float wide = atan2_precise(length(p + q), length(p - q));
   float k_corner = max(dot(k, corner), 0.0);
 
   // the lobe about h: t and c a of wm = stretch * n, as linear forms of n - n_h = x corner + y across, projected
-  float c = 0.5 * length(wo + wi);
-  vec3 h = (wo + wi) / (2.0 * c);
+  vec3 both_ways = wo + wi, t = wo - wi;
+  // lengths of wo and wi that differ by a rounding tilt the shorter of these to the other: it is made upright
+  if (dot(t, t) > dot(both_ways, both_ways)) both_ways -= dot(both_ways, t) / dot(t, t) * t;
+  float c = 0.5 * length(both_ways);
+  vec3 h = both_ways / (2.0 * c);
   float size_n = length(h / stretch);
-  vec3 t = wo - wi;
   t -= dot(t, h) * h;
   if (dot(t, t) < 1e-12) {
     t = abs(h.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
@@ -63,8 +61,8 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
   vec3 turned = side * cross(h, u_x);
   float rise = dot(n_h, corner);
   float reach = max(length(stretch * turned) / (stretch.x * stretch.y * size_n * size_corner), 1e-15);
-  float omega_h = atan2_precise(dot(n_h, left), dot(n_h, ahead));
   vec3 across = normalize(stretch * turned), u_y = normalize(stretch * stretch * turned);
+  vec3 ray_h = side * cross(corner, across);
 
   // its cone, for x and y in units of x_unit and y_unit, so that all is of the size of 1 or of rho:
   // P x^2 + 2 Q x y + S y^2 - 2 rho (g_x x + g_y y) - rho <= 0, and where that has a solution x, A y^2 + 2 B y + C >= 0
@@ -82,14 +80,6 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
   float A = rho * (dot(mixed_t, mixed_t) + dot(mixed_a, mixed_a)) - det * det - rho * rho * dot(normal, normal);
   float B = rho * (P * g_y - Q * g_x);
   float C = rho * (rho * g_x * g_x + P);
-  float low = -wide - omega_h, high = wide - omega_h;  // of omega - omega_h
-  if (cone && B * B > A * C) {
-    float sum = sqrt(B * B - A * C) + abs(B);
-    float near = atan2_precise(C * y_unit, sum * reach);
-    float far = A < 0.0 ? atan2_precise(sum * y_unit, -A * reach) : PI;
-    low = max(low, B > 0.0 ? -near : -far);
-    high = min(high, B > 0.0 ? far : near);
-  }
 
   // p . n_h, q . n_h and k . n_h, in which nothing cancels
   float o_h = c / (size_o * size_n), i_h = c / (size_i * size_n), z_h = h.z / size_n;
@@ -98,14 +88,23 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
   float k_h = z_between ? z_h : off_o > off_i ? i_h : o_h;
   float p_across = dot(p, across), q_across = dot(q, across), k_across = dot(k, across);
 
+  // the angle omega of rays, from the ray through n_h on, to the planes of p and q and within the cone
+  float low = -atan2_precise(p_h, reach * p_across), high = atan2_precise(q_h, -reach * q_across);
+  if (cone && B * B > A * C) {
+    float sum = sqrt(B * B - A * C) + abs(B);
+    float near = atan2_precise(C * y_unit, sum * reach);
+    float far = A < 0.0 ? atan2_precise(sum * y_unit, -A * reach) : PI;
+    low = max(low, B > 0.0 ? -near : -far);
+    high = min(high, B > 0.0 ? far : near);
+  }
+
   float sum = 0.0;
   for (int j = 0; j < nodes; ++j) {
     vec2 outer = gauss(j);
-    float turn = 0.5 * (low + high) + 0.5 * (high - low) * outer.x;  // omega - omega_h
-    float omega = omega_h + turn;
-    vec3 ray = cos(omega) * ahead + sin(omega) * left;
+    float omega = 0.5 * (low + high) + 0.5 * (high - low) * outer.x;
+    float bent = sin(omega), straight = cos(omega);
+    vec3 ray = straight * ray_h + bent * across;
     float psi_k = atan2_precise(k_corner, -dot(k, ray));
-    float bent = sin(turn), straight = cos(turn);
     vec3 flat_h = max(straight / reach * vec3(p_h, q_h, k_h) + bent * vec3(p_across, q_across, k_across), vec3(0.0, 0.0, -2.0));
     vec2 foot = vec2(reach, rise * straight);  // where the ray passes n_h, by the projection
     float psi_h = atan2_precise(foot.x, foot.y), size_h = length(foot);
