@@ -45,7 +45,8 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     q = np.where(z_between, i, z)
     k = np.where(z_between, z, np.where(o_far, i, o))
 
-    u_x = np.cross(np.where(z_between | o_far, wo, wi), np.where(z_between, wi, z))
+    both_ways, t = wo + wi, wo - wi
+    u_x = np.where(z_between, np.cross(t, both_ways), np.cross(np.where(o_far, wo, wi), z))
     side = np.where(dot(np.where(z_between, z, np.where(o_far, wi, wo)), u_x) < 0, -1.0, 1.0)[:, None]
     size = length(u_x)[:, None]
     u_x = side * np.where(size > 1e-15, quotient(u_x, size), [1.0, 0.0, 0.0])
@@ -53,7 +54,6 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     corner = u_x / stretch / size_corner[:, None]
     k_corner = np.maximum(dot(k, corner), 0.0)
 
-    both_ways, t = wo + wi, wo - wi
     tilt = np.where(dot(t, t) > dot(both_ways, both_ways), quotient(dot(both_ways, t), dot(t, t)), 0.0)
     both_ways = both_ways - tilt[:, None] * t
     c = 0.5 * length(both_ways)

@@ -35,7 +35,8 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
   vec3 k = z_between ? z : off_o > off_i ? i : o;
 
   // The corner: as a direction of wm it is the product of the two before they are stretched, in which alpha does not cancel
-  vec3 u_x = cross(z_between || off_o > off_i ? wo : wi, z_between ? wi : z);
+  vec3 both_ways = wo + wi, t = wo - wi;  // wo x wi = t x both_ways / 2, in which nothing cancels
+  vec3 u_x = z_between ? cross(t, both_ways) : cross(off_o > off_i ? wo : wi, z);
   float side = dot(z_between ? z : off_o > off_i ? wi : wo, u_x) < 0.0 ? -1.0 : 1.0;
   float size = length(u_x);
   u_x = size > 1e-15 ? u_x * (side / size) : vec3(side, 0.0, 0.0);
@@ -44,7 +45,6 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
   float k_corner = max(dot(k, corner), 0.0);
 
   // the lobe about h: t and c a of wm = stretch * n, as linear forms of n - n_h = x corner + y across, projected
-  vec3 both_ways = wo + wi, t = wo - wi;
   // lengths of wo and wi that differ by a rounding tilt the shorter of these to the other: it is made upright
   if (dot(t, t) > dot(both_ways, both_ways)) both_ways -= dot(both_ways, t) / dot(t, t) * t;
   float c = 0.5 * length(both_ways);

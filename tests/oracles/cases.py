@@ -36,7 +36,9 @@ def choices_of(cls):
 
 def once(options):
     """A smaller list of dicts, in which each option of a name occurs."""
-    return [{name: o[i % len(o)] for name, o in options.items()} for i in range(max(map(len, options.values())))]
+    count = max(map(len, options.values()))
+    # names go out of step: with i // len(o) * j, the first and the second name of two options meet in each pair
+    return [{n: o[(i + i // len(o) * j) % len(o)] for j, (n, o) in enumerate(options.items())} for i in range(count)]
 
 
 SLOW = {"nonspecular"}
