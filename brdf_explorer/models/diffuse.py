@@ -26,8 +26,8 @@ class Diffuse(Model):
             self.diffuse == "lambert_sphere"
         ):  # white spheres gain 8e-5: of their phase function only the first scattering is exact
             return {"energy": 1.0001}
-        if self.diffuse == "facets":  # exchanged, the nodes may lie about another corner
-            return {"reciprocity": 1e-8}
+        if self.diffuse == "facets":  # next to each other, exchanged directions have nodes about another corner
+            return {"reciprocity": 1e-6}
         if self.diffuse != "oren_nayar":
             return {}
         # largest for a grazing viewer: A + B/2, the mean of the factors A at the normal and A + B between horizon and 45 degrees
