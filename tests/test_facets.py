@@ -192,7 +192,7 @@ def test_the_view_tells_the_limit_and_what_F_does(gpu):
     picture, text = words(gpu, load("gold"))
     assert any("0.99994 of it along ωr" in t for t in text) and any("without F" in t for t in text)
     assert "largest difference at κ = 30" in picture.note
-    sharp = load("gold").with_view("facets", kappa=1e6)
+    sharp = load("gold").with_view("facets", sharpness=1e6)
     assert float(words(gpu, sharp)[0].note.split(": ")[1].split()[0]) < 1e-4
 
 

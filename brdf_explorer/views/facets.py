@@ -43,7 +43,7 @@ class Facets(Drawn):
 
     title = "Non-specular"
 
-    kappa: float = param(30.0, 1.0, 1e6, "sharpness of the lobe whose curve is drawn thick", scale="log")
+    sharpness: float = param(30.0, 1.0, 1e6, "sharpness of the lobe whose curve is drawn thick", scale="log")
     axis: str = choice("log", ("log", "linear"), "scale of the values")
     decades: int = param(4, 1, 12, "decades that a logarithmic axis shows")
 
@@ -53,7 +53,7 @@ class Facets(Drawn):
     def curves(self, state):
         """theta (n,) in radians, positive on the viewer's side, and {kappa: luminance of f (n,)}, mirrors at infinity."""
         model, at = mirrors(state.model), (state.directions.theta_o, state.directions.phi_o)
-        found = {k: curve(model, k, *at)[1] for k in sorted({*STEPS, self.kappa})}
+        found = {k: curve(model, k, *at)[1] for k in sorted({*STEPS, self.sharpness})}
         return curve(model, np.inf, *at)[0], found | {np.inf: curve(model, np.inf, *at)[1]}
 
     def table_of(self, gpu, state):
@@ -74,12 +74,12 @@ class Facets(Drawn):
             return
         theta, found = self.curves(state)
         theta_o, phi = np.radians([state.directions.theta_o, state.directions.phi_o])
-        kappas = np.unique(np.append(SHARPNESS, self.kappa))
+        kappas = np.unique(np.append(SHARPNESS, self.sharpness))
         yield self.drawing(draw, state, theta, found, kappas, None), "", False
         off = differences(state.model, theta_o, phi, kappas)
-        here = number(float(off[kappas == self.kappa][0]), 3)
+        here = number(float(off[kappas == self.sharpness][0]), 3)
         draw = self.drawing(Drawing(size, scale, state.look.theme), state, theta, found, kappas, off)
-        yield draw, f"largest difference at κ = {self.kappa:.3g}: {here} of the peak", True
+        yield draw, f"largest difference at κ = {self.sharpness:.3g}: {here} of the peak", True
 
     def drawing(self, draw, state, theta, found, kappas, off):
         """Everything drawn; off: the differences for the kappas, or None while they are not known."""
@@ -117,7 +117,7 @@ class Facets(Drawn):
     def legend(self, found, draw):
         """[(words, colour role or number)] of the curves."""
         colors = dict(zip(STEPS, draw.colors["curves"], strict=False))
-        lobes = [(f"κ = {number(k)}", "accent" if k == self.kappa else colors[k]) for k in found if k != np.inf]
+        lobes = [(f"κ = {number(k)}", "accent" if k == self.sharpness else colors[k]) for k in found if k != np.inf]
         return [("mirrors: Torrance-Sparrow", "reference"), *lobes]
 
     def lobes(self, draw, box, theta, found, theta_o):
@@ -136,7 +136,7 @@ class Facets(Drawn):
         draw.over()
         _, *lobes = self.legend(found, draw)
         for (_, color), (kappa, v) in zip(lobes, found.items(), strict=False):
-            axes.line(degrees, v, color, 2.8 if kappa == self.kappa else 1.4)
+            axes.line(degrees, v, color, 2.8 if kappa == self.sharpness else 1.4)
 
     def fall(self, draw, box, kappas, off):
         """The largest difference over the sharpness, and a line that falls as its reciprocal."""
@@ -150,7 +150,7 @@ class Facets(Drawn):
         draw.over()
         axes.line(kappas, off, "blue", 2.4)
         draw.over()
-        draw.dot(axes.place(self.kappa, float(off[kappas == self.kappa][0])), "accent", 9.0)
+        draw.dot(axes.place(self.sharpness, float(off[kappas == self.sharpness][0])), "accent", 9.0)
 
     def words(self, state, room):
         """Lines of `room` points: what the limit is, and what it is as the lecture prints it, in the mirror direction."""
