@@ -62,6 +62,7 @@ def differences(model, theta_o, phi_o=0.0, kappas=SHARPNESS):
 
 
 @lru_cache(512)
+@np.errstate(under="ignore")  # in the tails of a density
 def difference(model, theta_o, phi_o, kappa):
     """One of the `differences`, of a microfacet model."""
     near = np.tan(np.linspace(0.0, 1.2, DIRECTIONS)) * max(model.alpha)

@@ -27,6 +27,7 @@ LEFT = 54  # points left of the curves, for ticks
 
 
 @lru_cache(64)
+@np.errstate(under="ignore")  # in the tails of a density
 def curve(model, kappa, theta_o, phi_o):
     """theta (n,) in radians and the luminance (n,) of a microfacet model's f with lobes for mirrors; theta_o, phi_o: degrees."""
     theta_o, phi = np.radians([theta_o, phi_o])
@@ -152,6 +153,7 @@ class Facets(Drawn):
         draw.over()
         draw.dot(axes.place(self.sharpness, float(off[kappas == self.sharpness][0])), "accent", 9.0)
 
+    @np.errstate(under="ignore")
     def words(self, state, room):
         """Lines of `room` points: what the limit is, and what it is as the lecture prints it, in the mirror direction."""
         wo = direction(*np.radians([state.directions.theta_o, state.directions.phi_o]))
