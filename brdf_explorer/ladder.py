@@ -152,7 +152,12 @@ LADDERS = {
             own={"spectral": of_spectrum},
         ),
         # "diffuse" has two truths: a rough surface is not a heap of grains, so each has its own question
-        of_choice("diffuse", "Does the roughness of a diffuse surface show?", "f", ("lambert", "oren_nayar", "eon")),
+        of_choice(
+            "diffuse",
+            "Does the roughness of a diffuse surface show?",
+            "f",
+            ("lambert", "oren_nayar", "facets", "eon"),
+        ),
         of_choice(
             "spheres",
             "Does it show that a body consists of grains?",
@@ -160,6 +165,7 @@ LADDERS = {
             ("lambert", "lambert_sphere_fast", "lambert_sphere"),
             choice="diffuse",
         ),
+        of_choice("nodes", "How many nodes does the integral over facets need?", "f", ("8", "12", "16")),
         of_choice(
             "sampling",
             "How are directions drawn?",

@@ -6,7 +6,7 @@ import subprocess
 
 import pytest
 from oracles.cases import choices_of, pairwise
-from test_twins import CHUNKS
+from test_twins import CHUNKS, included
 
 from brdf_explorer import glsl
 from brdf_explorer.glsl import PREAMBLE, SHADERS, Source, assemble, functions, of_model, params_glsl
@@ -239,8 +239,8 @@ def test_vertex_shader_compiles(gpu, vertex, dialect):
 
 
 def alone(chunk, dialect, formulas="stable"):
-    """A shader with nothing but the chunk: it includes all that it needs."""
-    generated = {"chunk.glsl": f'#include "lib/{chunk}.glsl"\n', "call.glsl": CONSTANT}
+    """A shader with nothing but the chunk, which includes all that it needs but for what slots give."""
+    generated = {"chunk.glsl": included(chunk), "call.glsl": CONSTANT}
     return assemble("views/probe.frag", generated=generated, dialect=dialect, formulas=formulas)
 
 

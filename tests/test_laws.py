@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from oracles.cases import CASES, case_label, corners, material
+from oracles.cases import CASES, SLOW, case_label, corners, material
 from test_sampling import SAMPLERS
 
 from brdf_explorer.measure import albedo, albedo_with_error, laws
@@ -22,7 +22,7 @@ def test_reciprocal_finite_and_not_negative(cls, choices):
     rng = np.random.default_rng(1)
     for model in [cls(**choices), *corners(cls, choices), material(cls, choices, rng)]:
         for law in (reciprocity(model, rng, 2000), finite("finite", model, model, rng, 2000)):
-            assert law.ok, (model, law)
+            assert law.measured <= model.exceptions().get(law.name, law.limit), (model, law)
 
 
 @pytest.mark.parametrize(("cls", "choices"), [c for c in CASES if c[1].get("fresnel", "one") == "one"], ids=case_label)
@@ -36,7 +36,7 @@ def test_energy(cls, choices):
         assert law.measured <= model.exceptions().get(law.name, law.limit), (model, law)
 
 
-@pytest.mark.parametrize(("cls", "choices"), SAMPLERS, ids=case_label)
+@pytest.mark.parametrize(("cls", "choices"), [s for s in SAMPLERS if s[0].name() not in SLOW], ids=case_label)
 def test_all_laws_hold_for_both_twins(gpu, cls, choices):
     found = list(laws(cls(**choices), gpu))
     assert all(law.ok for law in found), [law for law in found if not law.ok]

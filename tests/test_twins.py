@@ -11,7 +11,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from oracles.cases import CASES, case_label, choices_of, pairwise
+from oracles.cases import CASES, SLOW, case_label, choices_of, pairwise
 
 from brdf_explorer.glsl import SHADERS, Signature, assemble, functions
 from brdf_explorer.lib import fresnel
@@ -26,15 +26,36 @@ WORST = 1e-3
 
 CHUNKS = sorted(p.stem for p in (SHADERS / "lib").glob("*.glsl"))
 
+BY_QUADRATURE = 2e-3
+"""COMMON for SLOW models, of values from 1e-4 of the largest on: rounding moves the nodes, so values differ by a share of the
+rule's own error, and where two planes are as far apart as two others it may choose the other two."""
+NEEDS = {  # what stands before a chunk that declares functions of other slots
+    "facets": ("ndf_ggx", "gauss_8"),
+    "facets_ggx": ("gauss_8",),
+    "facets_beckmann": ("gauss_8",),
+    "facet_lobe": ("ndf_ggx", "sampling_ggx_caps", "fresnel_one"),
+}
+
 ONLY_NUMPY = {
     "common": {"dot", "length", "normalize", "mix", "quotient", "vec", "split", "above_horizon"},  # words that GLSL has
     "srgb": {"srgb_decode"},  # colours of the interface become linear once, on their way in
     "lambert_sphere": {"polynomial"},  # a series of one variable
     "diffuse_lambert_sphere_fast": {"grazing_albedo"},  # of a law's limit
+    "gauss_8": {"gauss"},  # of whole numbers, as their twins; in f of nonspecular
+    "gauss_12": {"gauss"},
+    "gauss_16": {"gauss"},
+}
+GIVEN = {  # functions of other slots, which the GLSL declares and finds where it is included, and the twin is given
+    "facets": {"facets": ["D", "gauss"]},
+    "facet_lambert": {"facet_scale": ["F"], "facet_wi": ["sample_wi"], "facet_pdf": ["D", "pdf_wi"]},
+    "facet_lobe": {"facet_scale": ["F"], "facet_wi": ["sample_wi"], "facet_pdf": ["D", "pdf_wi"]},
 }
 ONLY_GLSL = {
     "ndf_beckmann": {"leading"},  # of float32's rounding
     "lambert_sphere": {"series"},
+    "gauss_8": {"gauss"},
+    "gauss_12": {"gauss"},
+    "gauss_16": {"gauss"},
 }
 COLORS = {"f", "diffuse_f", "F", "tonemap", "srgb_encode"}
 """Functions whose components are compared each; other vectors are compared relative to their length."""
@@ -153,6 +174,7 @@ DRAWS = {
     "cos_o": COSINE,
     "sin_o": sine_of("cos_o"),
     "density": decades(1e-6, 1e7),
+    "kappa": decades(1, 1e6),
     "pixel": integers(2**14),
     "index": integers(2**32),
     "stream": integers(3),
@@ -245,20 +267,35 @@ def relative_error(value, expected, floor=TINY, components=False):
     return np.maximum(error - floor, 0) / np.maximum(size, floor)
 
 
-def check(error):
+def check(error, common=COMMON, worst=WORST):
     """The requirement on relative errors."""
     __tracebackhide__ = True
     assert np.all(np.isfinite(error))
-    share, largest = np.mean(error > COMMON), np.max(error)
-    found = f"{share:.3%} of the values err by more than {COMMON:g}; the largest error is {largest:.2g}"
+    share, largest = np.mean(error > common), np.max(error)
+    found = f"{share:.3%} of the values err by more than {common:g}; the largest error is {largest:.2g}"
     print(found)
-    assert share <= 1 - COMMON_SHARE and largest <= WORST, found
+    assert share <= 1 - COMMON_SHARE and largest <= worst, found
+
+
+def check_model(cls, error):
+    """The requirement on f and on weights."""
+    check(error, *((BY_QUADRATURE, np.inf) if cls.name() in SLOW else ()))
+
+
+def lowest(cls, expected):
+    """The value below which errors of f and of weights do not count."""
+    return 1e-4 * expected.max() if cls.name() in SLOW else 0.0
+
+
+def included(chunk):
+    """GLSL that includes a chunk, after what it needs."""
+    return "".join(f'#include "lib/{name}.glsl"\n' for name in (*NEEDS.get(chunk, ()), chunk))
 
 
 def chunk_error(gpu, function, twin, text=None, n=40_000):
     """Relative errors of a chunk's GLSL function, or of another text with the same signature, against its twin."""
     arguments = draw(function, n, np.random.default_rng(0))
-    include = {"chunk.glsl": text or f'#include "{function.file}"\n'}
+    include = {"chunk.glsl": text or included(chunk_of(function))}
     value = gpu.evaluate(
         lambda call: assemble("views/probe.frag", generated={**include, "call.glsl": call}),
         function.signature,
@@ -292,7 +329,9 @@ def test_functions_and_arguments_have_the_same_names(chunk):
     glsl = {f.name: f for f in functions(f"lib/{chunk}.glsl")}
     assert set(glsl) - ONLY_GLSL.get(chunk, set()) == set(numpy) - ONLY_NUMPY.get(chunk, set())
     for name in set(glsl) & set(numpy):
-        assert [n for _, n in glsl[name].arguments] == list(inspect.signature(numpy[name]).parameters), name
+        given = GIVEN.get(chunk, {}).get(name, [])
+        arguments = [n for _, n in glsl[name].arguments]
+        assert [*arguments, *given] == list(inspect.signature(numpy[name]).parameters), name
 
 
 @pytest.mark.parametrize("chunk", CHUNKS)
@@ -304,8 +343,14 @@ def test_constants_are_the_same(chunk):
 
 @pytest.mark.parametrize(
     "function",
-    # F_spectral is tested by each metal's F, which brings its tables
-    [f for f in LIB if not f.over_maps and f.name != "F_spectral" and f.name not in ONLY_GLSL.get(chunk_of(f), ())],
+    [
+        f
+        for f in LIB
+        if not f.over_maps
+        and f.name != "F_spectral"  # tested by each metal's F, which brings its tables
+        and f.name not in ONLY_GLSL.get(chunk_of(f), ())
+        and f.name not in GIVEN.get(chunk_of(f), ())
+    ],
     ids=label,
 )
 def test_chunk(gpu, function):
@@ -348,8 +393,9 @@ def materials(cls, choices, rng, count=12):
         yield cls(**choices, **random_params(cls, rng))
 
 
-def pair(model, rng, n=3_000):
+def pair(model, rng):
     """wo and wi (n, 3), as float32 holds them: half of the wi are drawn by the model's sampler, so near the lobe."""
+    n = 300 if model.name() in SLOW or model.choices().get("diffuse") == "facets" else 3_000
     wo, wi = (hemisphere(rng, n, 3, {}).astype(np.float32) for _ in range(2))
     sampled = model.sample_f(wo, rng.random((n, 2)))[0].astype(np.float32)
     near = (rng.random(n) < 0.5) & (sampled[:, 2] >= 1e-4)
@@ -378,8 +424,10 @@ def test_f(gpu, cls, choices):
         wo, wi = pair(model, rng)
         # D leaves float32's normal range before f = D F G / (4 cos cos) does
         floor = TINY / np.minimum(4 * wo[:, 2:] * wi[:, 2:], 1)
-        errors.append(relative_error(gpu.f(model, wo, wi), model.f(wo, wi), floor, True)[~exempt(model, wo, wi)])
-    check(np.concatenate(errors))
+        expected = model.f(wo, wi)
+        floor = np.maximum(floor, lowest(cls, expected))
+        errors.append(relative_error(gpu.f(model, wo, wi), expected, floor, True)[~exempt(model, wo, wi)])
+    check_model(cls, np.concatenate(errors))
 
 
 @pytest.mark.parametrize(("cls", "choices"), CASES, ids=case_label)
@@ -406,10 +454,10 @@ def test_sample_f(gpu, cls, choices):
             expected = quotient(model.f(wo, wi) * wi[:, 2:], model.pdf(wo, wi)[:, None])
             # a weight may hold D, which leaves float32's range as in test_f
             floor = quotient(TINY * wi[:, 2] / np.minimum(4 * wo[:, 2] * wi[:, 2], 1), model.pdf(wo, wi))
-        floor = np.maximum(floor, TINY)[:, None]
+        floor = np.maximum(np.maximum(floor, TINY)[:, None], lowest(cls, expected))
         weights.append(relative_error(weight, expected, floor, True)[~exempt(model, wo, wi)])
     check(np.concatenate(directions))
-    check(np.concatenate(weights))
+    check_model(cls, np.concatenate(weights))
 
 
 # --- the harness itself ----------------------------------------------------------------------------------------------
@@ -469,6 +517,10 @@ def test_models_have_the_functions_of_their_shaders(cls):
 def test_cases_hold_all_pairs_of_options():
     for cls in MODELS.values():
         choices = choices_of(cls)
+        if cls.name() in SLOW:
+            held = {item for c, case in CASES if c is cls for item in case.items()}
+            assert held == {(name, o) for name, options in choices.items() for o in options}
+            continue
         held = {pair for c, case in CASES if c is cls for pair in combinations(case.items(), 2)}
         sizes = [len(options) for options in choices.values()]
         assert len(held) == sum(a * b for a, b in combinations(sizes, 2))

@@ -40,8 +40,8 @@ NODES = 24
 STEPS = (1, -1, 10, -10)
 """Changes of an argument that its condition is taken from, in UNITs. Ten of them see a kink next to it, as at total reflection,
 where a formula that rounds more than once may end on the other side."""
-PARTS = {"pdf_wi", "weight_wi"}
-"""Functions that are no rows: they are all of pdf and sample_f but for what has a row."""
+PARTS = {"pdf_wi", "weight_wi", "facets", "facet_sharpness", "facet_scale", "facet_wi", "facet_pdf"}
+"""Functions that are no rows: they are all of f, pdf and sample_f but for what has a row."""
 COLORS = ("f", "F", "sample_f", "diffuse_f")
 """Functions whose components are compared each; other vectors are directions, compared relative to their length."""
 

@@ -2,5 +2,6 @@
 
 from .diffuse import Diffuse
 from .microfacet import Microfacet
+from .nonspecular import Nonspecular
 
-MODELS = {model.name(): model for model in (Microfacet, Diffuse)}
+MODELS = {model.name(): model for model in (Microfacet, Diffuse, Nonspecular)}

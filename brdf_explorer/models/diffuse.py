@@ -16,10 +16,14 @@ class Diffuse(Model):
     """Diffuse reflection by one of several laws. Leaves out light that leaves the body elsewhere."""
 
     albedo: tuple = param((0.8, 0.8, 0.8), 0.0, 1.0, "share of the light that a facet reflects, linear RGB", color=True)
-    sigma: float = param(0.3, 0.0, 1.0, "standard deviation of the facets' angle of slope, for oren_nayar", unit="rad")
+    sigma: float = param(
+        0.3, 0.0, 1.0, "standard deviation of the facets' angle of slope, for oren_nayar and facets", unit="rad"
+    )
     r: float = param(0.5, 0.0, 1.0, "roughness of eon, Fujii's: 0 is Lambert's law")
     diffuse: str = choice(
-        "lambert", ("lambert", "oren_nayar", "eon", "lambert_sphere", "lambert_sphere_fast"), "law of reflection"
+        "lambert",
+        ("lambert", "oren_nayar", "facets", "eon", "lambert_sphere", "lambert_sphere_fast"),
+        "law of reflection",
     )
 
     def exceptions(self):
@@ -32,6 +36,8 @@ class Diffuse(Model):
         ):  # its fit gains up to 30 %, at grazing angles, from an albedo of 0.765 on
             albedo = float(np.max(grazing_albedo(self.albedo)))
             return {"energy": albedo} if albedo > 1 else {}
+        if self.diffuse == "facets":  # next to each other, exchanged directions have nodes about another corner
+            return {"reciprocity": 1e-6}
         if self.diffuse != "oren_nayar":
             return {}
         # largest for a grazing viewer: A + B/2, the mean of the factors A at the normal and A + B between horizon and 45 degrees

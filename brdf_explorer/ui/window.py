@@ -97,7 +97,13 @@ class Window:
             split("MainDockSpace", "Right", direction.right, 0.46),
             split("Right", "Right foot", direction.down, 0.5),
         ]
-        places = {"lobe": "Right", "polar": "Right foot", "factors": "Right foot", "hemisphere": "Right"}
+        places = {
+            "lobe": "Right",
+            "polar": "Right foot",
+            "factors": "Right foot",
+            "facets": "Right foot",
+            "hemisphere": "Right",
+        }
         panels = [("Material", "Inspector", self.material), ("Scene", "Inspector", self.scene)]
         panels.append(("Presets", "Inspector", self.presets))
         for name, view in VIEWS.items():

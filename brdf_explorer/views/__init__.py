@@ -2,6 +2,7 @@
 
 from .chart import Chart
 from .compare import Compare
+from .facets import Facets
 from .factors import Factors
 from .hemisphere import Hemisphere
 from .least import Least
@@ -20,6 +21,7 @@ VIEWS = {
         Lobe,
         Polar,
         Factors,
+        Facets,
         Hemisphere,
         Sampling,
         Compare,
