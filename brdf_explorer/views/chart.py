@@ -22,7 +22,8 @@ SPAN = 12  # most decades of error that are shown
 MARK = 10  # diameter of a mark, points
 STRIP = 30  # height of the strip of exact methods, points
 SMALL = 10.5  # height of small print, points
-REDRAWN = 0.1  # seconds from one drawing to the next while measuring goes on
+REDRAWN = 0.1  # seconds at least from one drawing to the next while measuring goes on
+SHARE = 4  # and at least this times what drawing took
 NARROW = 300  # points that each of several charts side by side takes at least
 SHAPE = 1.4  # width over height that suits a chart
 
@@ -60,11 +61,16 @@ class Chart(Drawn):
         yield finished, True
 
     def drawings(self, gpu, state, size, scale=1.0):
-        drawn, since = None, 0.0
+        drawn, since, took = None, 0.0, 0.0
         for found, done in self.measured(gpu, state):
-            if done or drawn is None or time.perf_counter() - since > REDRAWN:
-                drawn, since = self.drawing(gpu, state, found, size, scale), time.perf_counter()
+            begun = time.perf_counter()
+            anew = done or drawn is None or begun - since > max(REDRAWN, SHARE * took)
+            if anew:
+                drawn = self.drawing(gpu, state, found, size, scale)
             yield drawn, "" if done else f"measuring {found[-1].ladder.name}: {found[-1].doing or 'begins'}", done
+            if anew:
+                since = time.perf_counter()
+                took = since - begun
 
     def drawing(self, gpu, state, found, size, scale):
         """The Drawing of some Tradeoffs."""
