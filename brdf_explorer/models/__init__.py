@@ -1,6 +1,7 @@
 """The models, one module each: a dataclass whose fields are the parameters. `MODELS` lists them by name."""
 
+from .dielectric import Dielectric
 from .diffuse import Diffuse
 from .microfacet import Microfacet
 
-MODELS = {model.name(): model for model in (Microfacet, Diffuse)}
+MODELS = {model.name(): model for model in (Microfacet, Diffuse, Dielectric)}
