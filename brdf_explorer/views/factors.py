@@ -83,11 +83,8 @@ class Factors(Drawn):
         foot, head = 62 * scale, (28 + 18 * rows) * scale
         box = (52 * scale, foot, max(width - 18 * scale, 60 * scale), max(height - head, foot + 8 * scale))
         both = state.model.index() is not None
-        title = (
-            "θi in the plane of incidence; beyond 90° below the surface, with F for 1 − F"
-            if both
-            else "θi in the plane of incidence"
-        )
+        title = "θi in the plane of incidence"
+        title += "; below the surface F is 1 − F, the Jacobian that of refraction" * both
         x = Axis(-270.0 if both else -90.0, 90.0, title)
         axes = Axes(draw, box, x, y)
         angles = np.arange(x.low, 91, (30 if box[2] - box[0] < 420 * scale else 15) * (3 if both else 1))
