@@ -39,6 +39,7 @@ def test_disc_keeps_areas():
 
 @pytest.mark.parametrize("scale", ["linear", "log"])
 @pytest.mark.parametrize("quantity", QUANTITIES)
+@np.errstate(under="ignore")
 def test_map_shows_the_models_values(gpu, quantity, scale):
     """Colours of the shader's map are those of float64 values at the pixels' points nearest to the peak."""
     view, side = Hemisphere(quantity=quantity, scale=scale), 64
