@@ -49,10 +49,9 @@ PAGES = {  # shelf, book and page of the refractiveindex.info database
     "nickel": ("main", "Ni", "Johnson"),
     "palladium": ("main", "Pd", "Johnson"),
     "mercury": ("main", "Hg", "Inagaki"),
-    "glass": ("specs", "SCHOTT-optical", "N-BK7"),
     "ceramic": ("glass", "soda-lime", "Rubin-clear"),
 }
-TRANSPARENT = ("glass", "ceramic")  # k, below 1e-5, is taken as 0
+TRANSPARENT = ("ceramic",)  # k, below 1e-5, is taken as 0
 LINES = (645, 526, 444)  # nm
 COARSE = np.arange(420, 691, 18)  # nm
 COS = np.cos(np.radians(np.arange(90)))

@@ -86,7 +86,7 @@ def generous(asked, seed=3):
     return Prices(1.0, change, passes)
 
 
-CASES = [("white_microfacets", "white_furnace", 0.2), ("gold", "one_light", 0.02), ("glass", "studio", 0.3)]
+CASES = [("white_microfacets", "white_furnace", 0.2), ("gold", "one_light", 0.02), ("ceramic", "studio", 0.3)]
 
 
 @pytest.mark.parametrize("material, scene, tolerance", CASES)
@@ -521,3 +521,10 @@ def test_bad_input_of_the_command_is_one_line(run, arguments, words):
     done = run(*arguments)
     assert done.exit_code != 0 and words in done.stderr + str(done.exception)
     assert [path.name for path in Path(".").iterdir()] == ["noisy.toml"]
+
+
+def test_a_ball_with_light_inside_is_refused(gpu):
+    with pytest.raises(
+        Invalid, match=r"Glass: light inside a ball is not compared here; `chart` compares f of its methods"
+    ):
+        result(least(gpu, load("glass", load("studio"))))

@@ -48,7 +48,7 @@ def visible_slope_beckmann(u, sin_o, cos_o):
     return np.where(u == 0, -6.0, x)
 
 
-def sample_wi(wo, u, alpha):
+def sample_wm(wo, u, alpha):
     x, y, z = split(wo)
     ax, ay = split(alpha)
     u0, u1 = split(u)
@@ -60,7 +60,11 @@ def sample_wi(wo, u, alpha):
     across = visible_slope_beckmann(u1, 0.0, 1.0)
     slope_x = along * cos_phi - across * sin_phi
     slope_y = along * sin_phi + across * cos_phi
-    return mirror(wo, normalize(vec(-ax * slope_x, -ay * slope_y, np.ones_like(slope_x))))
+    return normalize(vec(-ax * slope_x, -ay * slope_y, np.ones_like(slope_x)))
+
+
+def sample_wi(wo, u, alpha):
+    return mirror(wo, sample_wm(wo, u, alpha))
 
 
 def pdf_wi(wo, wi, density, alpha):

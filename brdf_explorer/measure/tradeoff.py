@@ -259,7 +259,7 @@ def kept_errors(gpu, ladder, state, metric):
 def value_errors(gpu, ladder, state, metric):
     """By quadrature in float64; the own error is the change from half the rays and what the reference is known to."""
     reference = ladder.reference(state)
-    alpha = ladder.at(state, reference).model.slopes()
+    alpha, index = ladder.at(state, reference).model.slopes(), ladder.at(state, reference).model.index()
     own = reference.own(state)
     tables, found = {}, {}
     for method in (reference, *ladder.methods):
@@ -267,7 +267,8 @@ def value_errors(gpu, ladder, state, metric):
             parts = {n: [] for n in (RAYS // 2, RAYS)}
             for n, of_rays in parts.items():
                 for wo in viewers():
-                    of_rays.append(values(evaluator(gpu, ladder.at(state, method).model, method), alpha, n, wo[None]))
+                    one = evaluator(gpu, ladder.at(state, method).model, method)
+                    of_rays.append(values(one, alpha, n, wo[None], index))
                     yield found
             tables[method.name] = [joined(of_rays) for of_rays in parts.values()]
         coarse, fine = map(metric.function, tables[method.name], tables[reference.name])

@@ -1,7 +1,8 @@
 """The models, one module each: a dataclass whose fields are the parameters. `MODELS` lists them by name."""
 
+from .dielectric import Dielectric
 from .diffuse import Diffuse
 from .microfacet import Microfacet
 from .nonspecular import Nonspecular
 
-MODELS = {model.name(): model for model in (Microfacet, Diffuse, Nonspecular)}
+MODELS = {model.name(): model for model in (Microfacet, Dielectric, Diffuse, Nonspecular)}

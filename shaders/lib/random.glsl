@@ -29,6 +29,12 @@ uvec3 pcg3d(uvec3 v) {
 // The highest 24 bits as a number in [0, 1): float32 holds no more of them, and rounding all 32 could give 1.
 vec2 unit_interval(uvec2 bits) { return vec2(bits >> 8u) * (1.0 / 16777216.0); }
 
+// A third number from a point of the unit square: for a sampler that takes two and has one decision more to make. It is the
+// point's hash, so that it shares no pattern with the two.
+float third(vec2 u) {
+  return unit_interval(pcg3d(uvec3(uvec2(u * 16777216.0), 0u)).xy).x;
+}
+
 // Point `index` in the unit square, by pixel and stream: the sequence rotated by the pixel's hash (Cranley and Patterson
 // 1976), in fixed point, which wraps exactly for every index.
 vec2 random2(uvec2 pixel, uint index, uint stream) {

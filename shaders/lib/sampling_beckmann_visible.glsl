@@ -35,15 +35,17 @@ float visible_slope_beckmann(float u, float sin_o, float cos_o) {
   return x;
 }
 
-vec3 sample_wi(vec3 wo, vec2 u, vec2 alpha) {
+vec3 sample_wm(vec3 wo, vec2 u, vec2 alpha) {
   vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
   float sin_o = length(v.xy);
   vec2 azimuth = sin_o > 0.0 ? v.xy / sin_o : vec2(1.0, 0.0);
   float along = visible_slope_beckmann(u.x, sin_o, v.z);
   float across = visible_slope_beckmann(u.y, 0.0, 1.0);
   vec2 slope = along * azimuth + across * vec2(-azimuth.y, azimuth.x);
-  return mirror(wo, normalize(vec3(-alpha * slope, 1.0)));
+  return normalize(vec3(-alpha * slope, 1.0));
 }
+
+vec3 sample_wi(vec3 wo, vec2 u, vec2 alpha) { return mirror(wo, sample_wm(wo, u, alpha)); }
 
 float pdf_wi(vec3 wo, vec3 wi, float density, vec2 alpha) { return density / (4.0 * visible_area(wo, alpha)); }
 

@@ -1,7 +1,7 @@
 // Light from all around: what the estimators of the slot have in common. Each pass of each adds an estimate of the radiance that
 // the surface sends to the eye, `radiance_environment`.
 #include "lib/environment.glsl"
-#include "lib/random.glsl"
+#include "views/random_{body}.glsl"
 
 uniform sampler2D map;
 uniform sampler2D cdf;

@@ -3,6 +3,6 @@
 
 vec3 radiance_environment(vec3 wo, mat3 frame) {
   vec3 wi;
-  vec3 weight = sample_f(wo, random2(uvec2(gl_FragCoord.xy), pass, STREAM_BSDF), wi);
+  vec3 weight = sample_f(wo, random(STREAM_BSDF), wi);
   return wi.z > HORIZON ? gain * weight * environment_radiance(map, turn * (frame * wi)) : vec3(0.0);
 }
