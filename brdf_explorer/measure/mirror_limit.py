@@ -28,7 +28,7 @@ def has_facets(model):
 
 def mirrors(model):
     """Torrance and Sparrow's model of the same facets."""
-    names = ("alpha", "eta", "k", "ndf", "shadowing", "fresnel", "smith")
+    names = ("alpha", "eta", "k", "ndf", "shadowing", "fresnel", "spectrum", "smith")
     return MODELS["microfacet"](**{name: getattr(model, name) for name in names})
 
 
@@ -42,7 +42,7 @@ def sharpened(model, kappa, wo, wi, reflectance=True):
     alpha = np.array(model.alpha)
     D, node_scale = slot("ndf", model.ndf).D, slot("facets", model.ndf).NODE_SCALE
     Lambda, G2 = slot("smith", model.ndf, model.smith).Lambda, slot("shadowing", model.shadowing).G2
-    F = slot("fresnel", model.fresnel).F if reflectance else fresnel_one.F
+    F = slot("fresnel", model.slots()["fresnel"]).F if reflectance else fresnel_one.F
 
     def value(wo, wi):
         seen = facets(wo, wi, alpha, kappa, node_scale, NODES, D, gauss)

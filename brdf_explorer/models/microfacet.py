@@ -7,23 +7,8 @@ import numpy as np
 from ..lib import slot
 from ..lib.common import HORIZON, above_horizon, split
 from ..lib.microfacet import cos_facet
-from ..model import Model, choice, param
-
-METALS = (
-    "gold",
-    "silver",
-    "copper",
-    "brass",
-    "aluminium",
-    "chrome",
-    "iron",
-    "stainless_steel",
-    "titanium",
-    "nickel",
-    "palladium",
-    "mercury",
-)
-"""Those of lib/fresnel_spectral_*."""
+from ..model import Model, choice
+from . import facets
 
 
 @dataclass(frozen=True)
@@ -34,33 +19,22 @@ class Microfacet(Model):
     seen along the normal (its albedo is 1 - ln 2), and transmission.
     """
 
-    alpha: tuple = param((0.2, 0.2), 1e-4, 1.0, "roughness along x and y: scale of the facets' slopes", scale="log")
-    eta: tuple = param((0.143, 0.375, 1.442), 0.05, 6.0, "index of refraction at R, G, B, relative to the air's")
-    k: tuple = param((3.983, 2.386, 1.603), 0.0, 15.0, "extinction coefficient at R, G, B; 0 for a dielectric")
-    ndf: str = choice("ggx", ("ggx", "beckmann"), "distribution of the facets' normals")
-    shadowing: str = choice(
-        "correlated",
-        ("none", "separable", "correlated", "directional", "full"),
-        "how masking towards the viewer and shadowing from the light combine",
-    )
-    fresnel: str = choice(
-        "conductor",
-        ("spectral", "conductor", "dielectric", "f82", "schlick", "constant", "one"),
-        "reflectance of a facet",
-    )
-    spectrum: str = choice("none", ("none", *METALS), "metal whose spectrum of eta and k is that of fresnel = spectral")
+    alpha: tuple = facets.alpha(0.2)
+    eta: tuple = facets.eta()
+    k: tuple = facets.k()
+    ndf: str = facets.ndf()
+    shadowing: str = facets.shadowing()
+    fresnel: str = facets.fresnel()
+    spectrum: str = facets.spectrum()
     sampling: str = choice(
         "caps",
         ("uniform", "cosine", "ndf", "visible", "caps", "bounded"),
         "how sample_f draws directions: over the hemisphere, by D, or by the normals that the viewer sees",
     )
-    smith: str = choice("exact", ("exact", "rational"), "Smith's Lambda of Beckmann: exact, or Walter's rational fit")
+    smith: str = facets.smith()
 
     def slots(self):
-        found = self.choices()
-        if self.fresnel == "spectral":  # each metal has a file
-            found["fresnel"] = f"spectral_{self.spectrum}"
-        return found
+        return facets.filled(self.choices())
 
     def slopes(self):
         return self.alpha

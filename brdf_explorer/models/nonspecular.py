@@ -10,9 +10,10 @@ import numpy as np
 from ..lib import slot
 from ..lib.common import HORIZON, above_horizon, quotient, split
 from ..lib.facet_lobe import blurred
-from ..lib.facets import facets
+from ..lib.facets import facets as integral
 from ..lib.microfacet import cos_facet
 from ..model import Model, choice, param
+from . import facets
 
 
 @dataclass(frozen=True)
@@ -23,21 +24,21 @@ class Nonspecular(Model):
     eta, k, kappa and fresnel are of lobe.
     """
 
-    alpha: tuple = param((0.3, 0.3), 0.01, 1.0, "roughness along x and y: scale of the facets' slopes", scale="log")
+    alpha: tuple = facets.alpha(0.3, low=0.01)
     albedo: tuple = param((0.8, 0.8, 0.8), 0.0, 1.0, "share of the light that a facet reflects, linear RGB", color=True)
     kappa: float = param(100.0, 1.0, 1e6, "sharpness of a facet's lobe: about 1 / its variance in angle", scale="log")
-    eta: tuple = param((0.143, 0.375, 1.442), 0.05, 6.0, "index of refraction at R, G, B, relative to the air's")
-    k: tuple = param((3.983, 2.386, 1.603), 0.0, 15.0, "extinction coefficient at R, G, B; 0 for a dielectric")
+    eta: tuple = facets.eta()
+    k: tuple = facets.k()
     facet: str = choice("lambert", ("lambert", "lobe"), "f_mf: Lambert's law, or a lobe about the mirror direction")
-    ndf: str = choice("ggx", ("ggx", "beckmann"), "distribution of the facets' normals")
-    shadowing: str = choice(
-        "correlated",
-        ("none", "separable", "correlated", "directional", "full"),
-        "how masking towards the viewer and shadowing from the light combine",
-    )
-    fresnel: str = choice("conductor", ("conductor", "dielectric", "schlick", "one"), "reflectance of a facet")
-    smith: str = choice("exact", ("exact", "rational"), "Smith's Lambda of Beckmann: exact, or Walter's rational fit")
+    ndf: str = facets.ndf()
+    shadowing: str = facets.shadowing()
+    fresnel: str = facets.fresnel()
+    spectrum: str = facets.spectrum()
+    smith: str = facets.smith()
     nodes: str = choice("12", ("8", "12", "16"), "points of the quadrature along each of two angles")
+
+    def slots(self):
+        return facets.filled(self.choices())
 
     def slopes(self):
         if self.facet == "lambert":
@@ -48,6 +49,8 @@ class Nonspecular(Model):
         found = {}
         if self.ndf == "beckmann" and self.smith == "rational":  # the fit's G1 errs by 3.1e-3
             found["weak white furnace"] = 3.2e-3
+        if self.fresnel == "spectral" and self.spectrum == "gold":  # its red is outside of the primaries
+            found["energy"] = 1.038
         if self.shadowing == "none":
             found["energy"] = np.inf
         found["reciprocity"] = (
@@ -81,7 +84,7 @@ class Nonspecular(Model):
         Lambda = slot("smith", self.ndf, self.smith).Lambda
         G = slot("shadowing", self.shadowing).G2(wo, wi, Lambda(wo, alpha), Lambda(wi, alpha))
         gauss = slot("gauss", self.nodes)
-        seen = facets(
+        seen = integral(
             wo,
             wi,
             alpha,
@@ -91,7 +94,7 @@ class Nonspecular(Model):
             slot("ndf", self.ndf).D,
             gauss.gauss,
         )
-        F = slot("fresnel", self.fresnel).F
+        F = slot("fresnel", self.slots()["fresnel"]).F
         scale = facet.facet_scale(
             cos_facet(wo, wi), np.array(self.albedo), np.array(self.eta), np.array(self.k), self.kappa, F
         )
