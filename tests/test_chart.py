@@ -221,7 +221,7 @@ def made(costs, errors, outside=None, kind="evaluation"):
     """A Tradeoff of given costs and errors."""
     outside = [""] * len(costs) if outside is None else outside
     points = tuple(
-        Point(Method(str(i), {}), None, o, Cost(c, c, c, 9), Measured(e, 1e-6))
+        Point(Method(str(i), {}), o, Cost(c, c, c, 9), Measured(e, 1e-6))
         for i, (c, e, o) in enumerate(zip(costs, errors, outside, strict=True))
     )
     ladder = Ladder("made", "Which?", "material", "f", tuple(p.method for p in points), bool)
@@ -256,6 +256,12 @@ def test_of_samplers_the_best_is_the_fastest_to_an_error():
     assert made([1.0, 2.0, 9.0], [4.0, 2.0, 1.0], kind="sample").best(1e-9).name == "1"
 
 
+def test_costs_that_noise_makes_negative_win_nothing():
+    assert [p.name for p in made([-3e-9, -1e-9, 1e-9], [0.3, 0.2, 0.1]).front()] == ["1", "2"]
+    found = made([-3e-9, -1e-9, 1e-9], [4.0, 2.0, 1.0], kind="sample")
+    assert found.best(1e-9).name == "1" and "lost in noise" in GOLD.views["chart"].tip(found, found.points[0])
+
+
 # --- cache and steps -------------------------------------------------------------------------------------------------
 
 
@@ -265,7 +271,8 @@ def test_loading_a_method_measures_nothing_anew(gpu, options):
     found = last(state.views["chart"].measured(gpu, state))[0][0]
     kept = dict(gpu.costs), dict(gpu.errors)
     for point in found.points:
-        again = last(point.state.views["chart"].measured(gpu, point.state))[0][0]
+        other = found.ladder.at(state, point.method)
+        again = last(other.views["chart"].measured(gpu, other))[0][0]
         assert [(p.cost, p.error) for p in again.points] == [(p.cost, p.error) for p in found.points]
     assert (gpu.costs.keys(), gpu.errors.keys()) == (kept[0].keys(), kept[1].keys())
 
@@ -306,12 +313,36 @@ def test_labels_are_inside_and_apart(gpu, options, size, scale, theme):
             assert {m.name for m in ladder.methods} <= words
 
 
+@pytest.mark.parametrize("name", ["fresnel", "sampling", "environment", "precision"])
+def test_names_of_equal_methods_find_room(gpu, name):
+    """With marks in one place, or in rows, and with quartiles across the whole chart."""
+    state = GOLD.with_view("chart", ladder="all")
+    rng = np.random.default_rng(3)
+    for costs, errors in ((0.0, 0.0), (0.0, 2.0), (0.1, 0.1), (0.5, 1.0)):
+        ladder = LADDERS[name]
+        kind = {"samples": "sample", "picture": "frame"}.get(ladder.measures, "evaluation")
+        points = []
+        for method in ladder.methods:
+            cost, error = 1e-8 * 10 ** rng.uniform(0, costs), 1e-2 * 10 ** rng.uniform(0, errors)
+            cost, error = Cost(cost, cost / 9, cost * 9, 15), Measured(error, error / 9)
+            points.append(Point(method, method.outside(state), cost, error))
+        metric = tradeoff.NATURAL[ladder.measures]
+        found = Tradeoff(ladder, metric, kind, (8, 8), tuple(points), ladder.reference(state).name, points[-1].error)
+        draw = state.views["chart"].drawing(gpu, state, [found], (1200, 900), 1.0)
+        boxes = list(boxes_of(draw, 1.0))
+        assert {m.name for m in ladder.methods} <= {words for *_, words in boxes}
+        for a, b in combinations(boxes, 2):
+            assert a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1], (a, b)
+
+
 def test_every_mark_is_a_link_to_its_method(gpu):
     state = GOLD.with_view("chart", ladder="fresnel")
     links = last(state.views["chart"].pictures(gpu, state, (800, 600))).links
+    later, elsewhere = state.with_view("lobe", radius="log"), state.with_model(DIFFUSE())
     for method in LADDERS["fresnel"].methods:
         mine = [k for k in links if k.tip.startswith(method.name)]
-        assert mine and all(k.state.model == LADDERS["fresnel"].at(state, method).model for k in mine)
+        assert mine and all(k.state(later) == LADDERS["fresnel"].at(later, method) for k in mine)
+        assert all(k.state(elsewhere) == elsewhere for k in mine)
         assert all(("outside its domain: k is not 0" in k.tip) == (method.name == "dielectric") for k in mine)
         assert all("ns an evaluation, quartiles" in k.tip and "±" in k.tip for k in mine)
 
@@ -392,6 +423,8 @@ def test_the_json_holds_all_numbers(run):
         (["--tolerance", "0"], "not a number from 1e-09 to 10"),
         (["--preset", "goldd"], "did you mean gold?"),
         (["shadowing", "-o", "x.exr"], "no format for a chart"),
+        (["shadowing", "-o", "nowhere/x.svg"], "no folder nowhere"),
+        (["shadowing", "-o", "x.svg", "--size", "0x9"], "size = 0x9 cannot be drawn"),
     ],
 )
 def test_bad_input_is_one_line(run, arguments, words):

@@ -21,6 +21,8 @@ STEADY = 0.02
 """Standard error of the median, over the median, at which repeating ends."""
 PATIENCE = 4.0
 """Seconds after which it ends as well."""
+FLOOR = 1e-11
+"""Seconds that can still be told from none; noise may leave less, or less than nothing, when empty draws are subtracted."""
 PAIRS = 2048
 """Evaluations of a timed call of numpy."""
 

@@ -36,10 +36,9 @@ class Senseless(Invalid):
 
 @dataclass(frozen=True)
 class Point:
-    """Where a method stands, as far as it is measured. state: the one with the method in use, or None if no state uses it."""
+    """Where a method stands, as far as it is measured."""
 
     method: Method
-    state: object
     outside: str
     cost: Cost | None = None
     error: Measured | None = None
@@ -86,7 +85,7 @@ class Tradeoff:
 
     def front(self):
         """The Pareto front, from the cheapest on: points within their domain such that no cheaper one is as accurate."""
-        inside = sorted((p for p in self.points if p.known and not p.outside), key=lambda p: (p.cost.median, height(p)))
+        inside = sorted((p for p in self.points if p.known and not p.outside), key=lambda p: (seconds(p), height(p)))
         found = []
         for point in inside:
             if not found or height(point) < height(found[-1]):
@@ -105,7 +104,12 @@ class Tradeoff:
 
 def effort(point):
     """Seconds that samples of this method take to a relative standard error of 1: cost times error squared."""
-    return point.cost.median * point.error.value**2
+    return seconds(point) * point.error.value**2
+
+
+def seconds(point):
+    """The median cost, and no less than what can be timed: costs below that are equal."""
+    return max(point.cost.median, cost.FLOOR)
 
 
 def height(point):
@@ -128,10 +132,7 @@ def tradeoffs(gpu, ladder, state, metric="own", kind="evaluation", size=cost.SIZ
     if reason:
         yield replace(found, reason=reason)
         return
-    points = {
-        m.name: Point(m, ladder.at(state, m) if m.changes is not None else None, m.outside(state))
-        for m in ladder.methods
-    }
+    points = {m.name: Point(m, m.outside(state)) for m in ladder.methods}
     found = replace(found, points=tuple(points.values()), reference=ladder.reference(state).name)
 
     def with_points(doing, **changes):
@@ -170,9 +171,7 @@ def senseless(ladder, state, metric):
         "picture": "how the picture is made",
     }
     others = [name for name, m in METRICS.items() if m.compares in JUDGED[ladder.measures]]
-    return (
-        f"Its methods differ in {about[ladder.measures]}: {metric} is no error of theirs. Choose {' or '.join(others)}."
-    )
+    return f"Its methods differ in {about[ladder.measures]}: {metric} is no error of theirs. Choose from: {', '.join(others)}."
 
 
 def report(gpu, found, tolerance):

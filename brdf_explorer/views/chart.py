@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..ladder import LADDERS
-from ..measure.cost import SIZE
+from ..measure.cost import FLOOR, SIZE
 from ..measure.error import METRICS
-from ..measure.tradeoff import effort, tradeoffs
+from ..measure.tradeoff import effort, seconds, tradeoffs
 from ..model import choice, param
 from .axes import Axes, Axis
 from .diagram import number
@@ -17,7 +17,6 @@ from .drawing import Drawing, Drawn
 LETTER = 0.56  # width of a letter over the height of its line, more than the average
 UNITS = {"evaluation": ("cost of an evaluation", "ns", 1e9), "sample": ("cost of a sample", "ns", 1e9)}
 UNITS |= {"frame": ("cost of a frame", "ms", 1e3)}
-FLOOR = 1e-11  # seconds that can still be timed; what costs less is shown there
 SPAN = 12  # most decades of error that are shown
 MARK = 10  # diameter of a mark, points
 STRIP = 30  # height of the strip of exact methods, points
@@ -25,6 +24,8 @@ SMALL = 10.5  # height of small print, points
 REDRAWN = 0.1  # seconds at least from one drawing to the next while measuring goes on
 SHARE = 4  # and at least this times what drawing took
 NARROW = 300  # points that each of several charts side by side takes at least
+NEAR = 100  # points from a mark to its name, and more only if it would meet lines of the chart there
+FARTHEST = 400  # and at most
 SHAPE = 1.4  # width over height that suits a chart
 
 
@@ -158,7 +159,7 @@ class Chart(Drawn):
             return
 
         def spot(p):
-            at = axes.place(per * max(p.cost.median, FLOOR), max(p.error.value, 1e-300))
+            at = axes.place(per * seconds(p), max(p.error.value, 1e-300))
             return np.array([at[0], bottom + strip / 2 if p.exact else max(at[1], bottom + strip)])
 
         spots = {p.name: spot(p) for p in known}
@@ -169,18 +170,18 @@ class Chart(Drawn):
             draw.stroke(steps, "blue", 1.4, 0.55)
         blocked = Blocked((left + 2 * s, bottom + 2 * s, right - 2 * s, top - 2 * s))
         for a, b in zip(steps, steps[1:], strict=False):
-            blocked.add((*(np.minimum(a, b) - s), *(np.maximum(a, b) + s)))
+            blocked.add_line((*(np.minimum(a, b) - s), *(np.maximum(a, b) + s)))
         draw.over()
         for p in known:
             at, color = spots[p.name], "green" if p is best else "blue"
             lows, highs = (axes.place(per * max(c, FLOOR), y.low)[0] for c in (p.cost.low, p.cost.high))
             draw.stroke([(lows, at[1]), (highs, at[1])], color, 1.0)
-            blocked.add((lows, at[1] - s, highs, at[1] + s))
+            blocked.add_line((lows, at[1] - s, highs, at[1] + s))
             if not p.exact:
                 span = np.array([p.error.value - p.error.error, p.error.value + p.error.error])
                 ends = np.clip(axes.place(x.low, np.maximum(span, 1e-300))[:, 1], bottom + strip, top)
                 draw.stroke([(at[0], ends[0]), (at[0], ends[1])], color, 1.0)
-                blocked.add((at[0] - s, ends[0], at[0] + s, ends[1]))
+                blocked.add_line((at[0] - s, ends[0], at[0] + s, ends[1]))
         draw.over()
         for p in known:
             at = spots[p.name]
@@ -206,9 +207,9 @@ class Chart(Drawn):
             at = spots[p.name]
             color = "ink" if p.method is current or p is best else "muted"
             box = label(draw, blocked, p.name, around(at, s), color, 12.0, at)
-            tip = self.tip(found, p)
+            tip, loads = self.tip(found, p), loading(found.ladder, p.method)
             for place in [(*(at - 9 * s), *(at + 9 * s))] + [box] * (box is not None):
-                draw.link(place, tip, p.state)
+                draw.link(place, tip, loads)
 
     def tip(self, found, p):
         """What is known of a point, line by line."""
@@ -216,7 +217,8 @@ class Chart(Drawn):
         cost, (value, own) = p.cost, p.error
         lines = [
             f"{p.name}{' (the reference)' if p.name == found.reference else ''}",
-            f"{number(per * cost.median)} {unit} a{'n' * (found.kind == 'evaluation')} {found.kind}, "
+            f"{number(per * cost.median)} {unit} a{'n' * (found.kind == 'evaluation')} {found.kind}"
+            f"{', lost in noise' * (cost.median <= FLOOR)}, "
             f"quartiles {number(per * cost.low)} to {number(per * cost.high)}, {cost.repeats} repeats",
             f"{METRICS[found.metric].title}: {number(value, 3)} ± {number(own, 2)}",
         ]
@@ -224,9 +226,14 @@ class Chart(Drawn):
             lines.append(f"cost × error²: {number(per * effort(p))} {unit}")
         if p.outside:
             lines.append(f"outside its domain: {p.outside}")
-        if p.state is None:
+        if p.method.changes is None:
             lines.append("only measured: what is on screen is drawn in float32")
         return "\n".join(lines)
+
+
+def loading(ladder, method):
+    """A function that gives a state the method, where its question arises; None if no state holds it."""
+    return None if method.changes is None else lambda now: ladder.at(now, method) if ladder.applies(now) else now
 
 
 def layout(total, width, height, least):
@@ -240,29 +247,36 @@ def layout(total, width, height, least):
 
 
 class Blocked:
-    """Boxes that no further label may meet, within one that it may not leave; left, bottom, right, top in pixels."""
+    """What no further label may meet, within a box that it may not leave: boxes of left, bottom, right, top in pixels.
+
+    Words and marks are met by none, lines by those only that find no other place.
+    """
 
     def __init__(self, inside):
-        self.inside, self.boxes, self.words = inside, [], []
+        self.inside, self.boxes, self.lines, self.words = inside, [], [], []
 
     def add(self, box):
         self.boxes.append(box)
+
+    def add_line(self, box):
+        self.lines.append(box)
 
     def over_words(self, start, end):
         """Whether a straight line meets a label."""
         along = start + np.linspace(0, 1, 17)[:, None] * (end - start)
         return any(np.any(np.all((along > box[:2]) & (along < box[2:]), axis=1)) for box in self.words)
 
-    def free(self, box):
+    def free(self, box, of_lines=True):
         left, bottom, right, top = box
         a, b, c, d = self.inside
         within = left >= a and bottom >= b and right <= c and top <= d
-        return within and not any(left < o[2] and o[0] < right and bottom < o[3] and o[1] < top for o in self.boxes)
+        others = self.boxes + self.lines * of_lines
+        return within and not any(left < o[2] and o[0] < right and bottom < o[3] and o[1] < top for o in others)
 
 
 def around(at, scale):
     """Places for a name (x, y, anchor) about a mark, from the nearest on."""
-    for distance in (12, 20, 32, 46, 62):
+    for distance in (12, 20, 32, 46, *range(62, FARTHEST, 12)):
         d = distance * scale
         for x, y, anchor in ((1, 0, 0), (-1, 0, 1), (0, 1, 0.5), (0, -1, 0.5), (0.8, 0.7, 0), (0.8, -0.7, 0)):
             yield at[0] + x * d, at[1] + y * d, anchor
@@ -271,16 +285,29 @@ def around(at, scale):
 
 
 def label(draw, blocked, words, places, color, size, mark=None):
-    """Write words at the first of some places that is free, with a line to a mark that is far; the box taken, or None."""
+    """Write words at the first of some places that is free, at least of words and marks; the box taken, or None.
+
+    A line leads to a mark that is far, over other words if there is no other way; words hide the lines that they meet.
+    """
     s = draw.scale
     width, height = (LETTER * size * len(words) + 4) * s, 1.15 * size * s
-    for x, y, anchor in places:
-        left = x - anchor * width
-        box = (left, y - height / 2, left + width, y + height / 2)
-        near = None if mark is None else np.clip(mark, box[:2], box[2:])
-        if blocked.free(box) and (mark is None or not blocked.over_words(mark, near)):
-            if mark is not None and np.linalg.norm(near - mark) > 20 * s:
-                draw.stroke([mark + (near - mark) * 0.35, near], "muted", 0.8)
+    places = list(places)
+    for of_lines, of_words in ((True, True), (False, True), (False, False)):
+        for x, y, anchor in places:
+            left = x - anchor * width
+            box = (left, y - height / 2, left + width, y + height / 2)
+            if not blocked.free(box, of_lines):
+                continue
+            if mark is not None:
+                near = np.clip(mark, box[:2], box[2:])
+                far = np.linalg.norm(near - mark) / s
+                if of_lines and far > NEAR or of_words and blocked.over_words(mark, near):
+                    continue
+                if far > 20:
+                    draw.stroke([mark + (near - mark) * 0.35, near], "muted", 0.8)
+            if not blocked.free(box):
+                draw.over()
+                draw.fill(box, "paper")
             blocked.add(box)
             blocked.words.append(box)
             draw.text(words, (x, y), color, (anchor, 0.5), size)
