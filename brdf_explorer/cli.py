@@ -453,17 +453,20 @@ def chart(ladder, preset, scene, error, cost, tolerance, size, as_json, output):
     """
     import json
 
-    from .export import DRAWINGS, known_suffix, save_view, write_png
+    from .export import DRAWINGS, check_size, known_suffix, save_view, write_png
     from .gpu import offscreen
     from .measure.tradeoff import report
-    from .state import dumps
+    from .state import dumps, writable
 
     options = {"ladder": ladder or "all", "error": error, "cost": cost, "tolerance": tolerance}
     state = loaded(preset, scene).with_view("chart", **{name: v for name, v in options.items() if v is not None})
     view = state.views["chart"]
     if output:
         suffix = known_suffix(output, {".json": None, ".png": write_png, **DRAWINGS}, "a chart")
+        writable(output)
     with offscreen() as gpu, progress() as show:
+        if size:
+            check_size(gpu, size)
         for found, _ in view.measured(gpu, state):
             if found:
                 show(f"{found[-1].ladder.name}: {found[-1].doing or 'done'}")
@@ -486,6 +489,8 @@ def chart(ladder, preset, scene, error, cost, tolerance, size, as_json, output):
 
 def print_tradeoff(one):
     """The table of one of measure.tradeoff.report's ladders."""
+    from .measure.cost import FLOOR
+
     title = f"{one['ladder']}: {one['question']}"
     if "reason" in one:
         click.echo(f"{title}\n{one['reason']}\n")
@@ -501,7 +506,7 @@ def print_tradeoff(one):
         rows.append(
             (
                 m["name"],
-                f"{per * cost['median']:.4g} {unit}",
+                f"{per * cost['median']:.4g} {unit}" if cost["median"] > FLOOR else "lost in noise",
                 f"{per * cost['low']:.4g} to {per * cost['high']:.4g}",
                 str(cost["repeats"]),
                 known,
@@ -516,7 +521,7 @@ def print_tradeoff(one):
         "quartiles",
         "repeats",
         one["metric"]["name"],
-        "within",
+        "±",
         "",
         "",
     )
@@ -546,16 +551,18 @@ def least(state, preset, tolerance, metric, as_json, size, output):
     """
     import json
 
-    from .export import DRAWINGS, known_suffix, save_view, write_png
+    from .export import DRAWINGS, check_size, known_suffix, save_view, write_png
     from .gpu import offscreen
     from .measure.advice import HEADS, report, rows, sentences
     from .measure.least import result
-    from .state import dumps, save
+    from .state import dumps, save, writable
 
     state = state.with_view("least", tolerance=tolerance, **({"metric": metric} if metric else {}))
     if output:
         suffix = known_suffix(output, {".toml": save, ".json": None, ".png": write_png, **DRAWINGS}, "an answer")
+        writable(output)
     with offscreen() as gpu, progress() as show:
+        check_size(gpu, size)
         answer = result(state.views["least"].answer(gpu, state), show)
         text = json.dumps(report(answer) | {"preset": dumps(answer.reduced)}, indent=2, allow_nan=False)
         if output and suffix == ".toml":
@@ -708,15 +715,22 @@ def stability(state, preset, everything, as_json, worst, ours, size, output):
     """
     import json
 
+    from .export import DRAWINGS, check_size, known_suffix, save_view, write_png
     from .gpu import offscreen
     from .measure.stability import stability as maps
-    from .model import Invalid
-    from .state import replacing, save
+    from .state import save, writable
     from .views.stability import shown_at
 
+    suffix = ""
     if worst and not (output or "").endswith(".toml"):
         raise click.UsageError("--worst needs -o FILE.toml, the preset to write")
+    if output:
+        suffix = known_suffix(output, {".toml": save, ".json": None, ".png": write_png, **DRAWINGS}, "a map")
+        writable(output)
+    if suffix == ".toml" and not worst:
+        raise click.UsageError(f"{output}: a preset is of one cell: --worst ROW COLUMN")
     with offscreen() as gpu, progress() as show:
+        check_size(gpu, size)
         for found in maps(gpu, state.model, everything=everything):
             show(f"{100 * found.progress:.0f} %")
         if worst:
@@ -725,19 +739,14 @@ def stability(state, preset, everything, as_json, worst, ours, size, output):
             save(shown, output)
             click.echo("\n".join([f"{output}: the worst point of {cell.row} {cell.column}, {cell.verdict}", *beyond]))
             return 0
-        answer = stability_tree(gpu, state, found)
-        if output and output.endswith(".json"):
-            with replacing(output) as temporary:
-                temporary.write_text(json.dumps(answer, indent=1, allow_nan=False), encoding="utf-8")
-        elif output and output.endswith(".toml"):
-            raise Invalid(f"{output}: a preset is of one cell: --worst ROW COLUMN")
+        text = json.dumps(stability_tree(gpu, state, found), indent=1, allow_nan=False)
+        if suffix == ".json":
+            write_text(output, text)
         elif output:
-            from .export import save_view
-
             rows = "all" if everything else "material"
             save_view(gpu, state.with_view("stability", rows=rows), "stability", output, size)
     if as_json:
-        click.echo(json.dumps(answer, indent=1, allow_nan=False))
+        click.echo(text)
     else:
         print_stability(found, state.material.name)
     if output:

@@ -243,19 +243,25 @@ def save(state, path):
         temporary.write_text(dumps(state), encoding="utf-8", newline="\n")
 
 
+def writable(path):
+    """The file that a path names, through links, if it can be one to write; else raises Invalid."""
+    path = Path(path)
+    place = path.resolve()
+    if place.is_dir():
+        raise Invalid(f"{path}: a folder, not a file to write")
+    if place.exists() and not place.is_file():
+        raise Invalid(f"{path}: a device, not a file to write")
+    if not place.parent.is_dir():
+        raise Invalid(f"{path}: cannot write: no folder {path.parent}")
+    return place
+
+
 @contextmanager
 def replacing(path):
     """A temporary path beside `path` that takes its place when the block ends well. Raises Invalid if it cannot."""
-    path = Path(path)
     temporary = None
     try:
-        place = path.resolve()  # through a link: the file that it names is replaced, not the link
-        if place.is_dir():
-            raise Invalid(f"{path}: a folder, not a file to write")
-        if place.exists() and not place.is_file():
-            raise Invalid(f"{path}: a device, not a file to write")
-        if not place.parent.is_dir():
-            raise Invalid(f"{path}: cannot write: no folder {path.parent}")
+        place = writable(path)
         handle, name = tempfile.mkstemp(suffix=place.suffix, prefix=".writing-", dir=place.parent)
         os.close(handle)
         temporary = Path(name)

@@ -383,6 +383,9 @@ def test_command_says_what_is_wrong(run):
     assert "no such column" in run("gold", "--worst", "D", "alpha", "-o", "x.toml", status=2)
     assert "no argument" in run("gold", "--worst", "D", "eta_1", "-o", "x.toml", status=2)
     assert "-o FILE.toml" in run("gold", "--worst", "D", "alpha_0", status=2)
+    assert "--worst ROW COLUMN" in run("gold", "-o", "x.toml", status=2)
+    assert "no format for a map" in run("gold", "-o", "x.exr", status=2)
+    assert "no folder nowhere" in run("gold", "-o", "nowhere/x.png", status=2)
 
 
 def test_command_fails_where_ours_breaks_its_promise(run, monkeypatch):
