@@ -28,6 +28,11 @@ def times(found):
     return f"{factor(found.median)} x ({factor(found.low)} to {factor(found.high)})"
 
 
+def gain(saving):
+    """What a change does to the time of a frame, in words."""
+    return f"{times(saving)} {'cheaper' if saving.low > 1 else 'as fast, so no cheaper that could be measured'}"
+
+
 def factor(value):
     """A number with three digits, or all those of a large one."""
     return f"{value:.0f}" if value >= 1000 else f"{value:.3g}"
@@ -81,7 +86,7 @@ def sentences(answer):
         value, most = (amount(v, answer.metric) for v in (error.value, error.high))
         found.append(f"{metric.title[0].upper()}{metric.title[1:]}: {value}, surely below {most}; {tolerance}.")
     for step in dropped:
-        cheaper = f", {times(step.saving)} cheaper" if step.saving else ""
+        cheaper = f", {gain(step.saving)}" if step.saving else ""
         found.append(f"{step.chosen.name} instead of {step.reference.name}: {effect(step, answer.metric)}{cheaper}.")
     for step in answer.steps:
         if step.rejected:

@@ -534,8 +534,7 @@ def least(gpu, state, tolerance=0.01, metric="picture", ladders=LADDERS, prices=
     if found is None:
         own = judge.seen[judge.top]
         raise Invalid(
-            f"no combination is surely within {tolerance:g}: the reference itself is known to {own.high:.2g} only; "
-            "ask for more, or give it more samples"
+            f"no combination is surely within {tolerance:g}: the reference itself is known to {own.high:.2g} only; allow more"
         )
     chosen, error = found
     reduced = settled(at(state, asked, chosen))
