@@ -30,7 +30,7 @@ def times(found):
 
 def gain(saving):
     """What a change does to the time of a frame, in words."""
-    return f"{times(saving)} {'cheaper' if saving.low > 1 else 'as fast, so no cheaper that could be measured'}"
+    return f"{times(saving)} {'cheaper' if saving.low > 1 else 'as fast'}"
 
 
 def factor(value):

@@ -122,6 +122,11 @@ class Chart(Drawn):
         draw.text(cut(about, room, 11.0), (left + 12 * s, top - 33 * s), "muted", (0.0, 0.5), 11.0)
         frame = (left + 58 * s, bottom + 42 * s, right - 18 * s, top - 70 * s)
         if frame[2] - frame[0] < 60 * s or frame[3] - frame[1] < 50 * s:
+            best = found.best(self.tolerance)
+            told = f"green would be: {best.name}" if best else "none is within the tolerance"
+            if top - bottom > 62 * s and not found.doing:
+                words = cut(f"No room for the chart; {told}.", room, 11.0)
+                draw.text(words, (left + 12 * s, top - 51 * s), "muted", (0.0, 0.5), 11.0)
             return
         self.plot(draw, frame, found, state, room - 46)
 

@@ -149,7 +149,8 @@ class Stability(Drawn):
 def legend(theme):
     """[(text, colour, meaning)] of what cells show."""
     colors = COLORS[theme]
-    entries = [("2e-7", colors["fine"][0], f"error up to {short(LIMIT)}"), ("35 %", colors["error"][1], "larger error")]
+    fine = f"error up to {short(LIMIT)}, half {short(REGIMES['half'].limit)}"
+    entries = [("2e-7", colors["fine"][0], fine), ("35 %", colors["error"][1], "larger error")]
     return entries + [(text, colors[name], meaning) for name, (text, meaning) in WORDS.items()]
 
 
@@ -262,7 +263,7 @@ def shown_at(state, cell):
         unit = "°" if declaration.unit == "deg" else ""
         for there, here in zip(values, kept, strict=True):
             if there != here:
-                beyond.append(f"{name} {there:.3g}{unit} cannot be shown: after a click it is {here:.4g}{unit}")
+                beyond.append(f"{name} {there:.3g}{unit} is beyond what a state holds: there it is {here:.4g}{unit}")
         return tuple(kept) if len(kept) > 1 else kept[0]
 
     params = declared(state.model, Param)
