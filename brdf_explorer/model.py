@@ -146,6 +146,9 @@ class Model(Declared):
                      a weight of 0 marks a direction below the horizon, which carries no energy
     """
 
+    stochastic = False
+    """True: f returns an unbiased estimate, another one at each call."""
+
     def slopes(self):
         """(alpha_x, alpha_y): scale of the half vectors' slopes over which f varies; grids and quadrature follow it."""
         return (1.0, 1.0)

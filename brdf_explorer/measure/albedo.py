@@ -6,6 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from .grid import grid, spread
+from .noise import Mean, Running
+
+NODES, REPEATS = 24, 16
+"""Rays, and directions a ray, of a grid of estimates, and how many of these are averaged."""
 
 
 class Integral(NamedTuple):
@@ -26,12 +30,37 @@ def albedo(model, wo, tolerance=1e-10, most=512):
 
 
 def albedo_with_error(model, wo, tolerance=1e-10, most=512):
-    """The directional albedo as an Integral, value and error (..., 3)."""
+    """The directional albedo as an Integral, value and error (..., 3).
+
+    Of a stochastic model it is the mean over REPEATS grids of NODES rays, moved at random within their cells, with one estimate of
+    f for each direction: without bias, and the error is the standard error.
+    """
     wo = np.asarray(wo, dtype=float)
+    if model.stochastic:
+        found = [_averaged(model, w) for w in wo.reshape(-1, 3)]
+        return Integral(*(np.array(part).reshape(wo.shape) for part in zip(*found, strict=True)))
     found = [
         integral(lambda o, i: model.f(o, i) * i[..., 2:], w, model.slopes(), tolerance, most) for w in wo.reshape(-1, 3)
     ]
     return Integral(*(np.array(part).reshape(wo.shape) for part in zip(*found, strict=True)))
+
+
+def _averaged(model, wo):
+    """The albedo of a stochastic model for one wo (3,)."""
+    if wo[2] <= 0:
+        return Mean(np.zeros(3), np.zeros(3))
+    rng, running = np.random.default_rng(1), Running()
+    grids, turns = [], []
+    for _ in range(REPEATS):
+        fraction, t = (np.arange(NODES) + rng.random((2, NODES))) / NODES
+        psi, turn = spread(wo, model.slopes(), fraction)
+        grids.append(grid(wo, model.slopes(), t, psi))
+        turns.append(turn)
+    wi, density = (np.stack([getattr(g, name) for g in grids]) for name in ("wi", "density"))
+    with np.errstate(under="ignore"):
+        weight = density * np.stack(turns)[..., None] * wi[..., 2] / NODES**2
+        running.add(np.einsum("rptc,rpt->rc", model.f(wo, wi), weight))
+    return running.mean()
 
 
 def integral(function, wo, alpha, tolerance=1e-10, most=512):

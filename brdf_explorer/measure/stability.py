@@ -122,10 +122,10 @@ def reflected(slope, share=1.0):
 
 
 def near(signs, off):
-    """Directions next to wo with the signs of its components changed, turned by `off`; below wo's azimuth at any height."""
+    """Directions next to wo, or a ray w, with the signs of its components changed, turned by `off`; below wo's azimuth at any height."""
 
     def draw(u, size, drawn):
-        w = drawn["wo"] * signs
+        w = drawn.get("wo", drawn.get("w")) * signs
         turn = off(np.abs(2 * u - 1), 1, drawn)[:, 0] * np.where(u[:, 0] < 0.5, -1, 1)
         if np.all(np.asarray(signs) == (-1, -1, 1)):
             z = np.minimum(w[:, 2] * 10.0 ** (4 * u[:, 1] - 2), 0.5)
@@ -192,6 +192,9 @@ ORDINARY = {
     "Lambda_o": decades(1e-3, 10.0),
     "Lambda_i": decades(1e-3, 10.0),
     "density": decades(1e-3, 1e3),
+    "depth": decades(1e-2, 10.0),
+    "area": linear(0.05, 1.0),
+    "hidden": decades(1e-3, 1.0),
 }
 """Where nothing special happens. A parameter of a model that is not here is drawn from its range."""
 
@@ -456,6 +459,8 @@ def subjects(model):
     """The Subjects of a material: the functions of chunks that its shader calls, and its own."""
     cls, path = type(model), f"models/{model.name()}.glsl"
     text = read(path, [])
+    for include in re.findall(r'#include "(models/[^"]+)"', text):
+        text += read(filled(include, model.choices(), path), [])
     called = set(re.findall(r"\b(\w+)\(", text))
     found = []
     for include in re.findall(r'#include "(lib/[^"]+)"', text):
@@ -465,7 +470,9 @@ def subjects(model):
             there = hasattr(slot(file[4:-5]), function.name)
             if there and function.name in called - PARTS - {s.name for s in found}:
                 found.append(_chunk(cls, file, function, chosen))
-    return found + [_of_model(cls, model, function) for function in functions(path)]
+    # of an estimate one value says nothing; its parts have rows
+    own = ("pdf",) if model.stochastic else ("f", "pdf", "sample_f")
+    return found + [_of_model(cls, model, function) for function in functions(path) if function.name in own]
 
 
 def _all_functions(file):

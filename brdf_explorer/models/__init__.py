@@ -2,5 +2,6 @@
 
 from .diffuse import Diffuse
 from .microfacet import Microfacet
+from .multiscatter import Multiscatter
 
-MODELS = {model.name(): model for model in (Microfacet, Diffuse)}
+MODELS = {model.name(): model for model in (Microfacet, Diffuse, Multiscatter)}
