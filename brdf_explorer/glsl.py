@@ -117,8 +117,8 @@ def params_glsl(name, cls):
 
 
 def of_model(path, model, dialect="330 core", slots=None, generated=None, formulas="stable"):
-    """A shader that uses the model: {model}, {random} and its choices fill slots, `params.glsl` declares `material`."""
-    own = {"model": model.name(), "random": "seeded" if model.stochastic else "none"}
+    """A shader that uses the model: {model}, {seeding} and its choices fill slots, `params.glsl` declares `material`."""
+    own = {"model": model.name(), "seeding": "pixel" if model.stochastic else "none"}
     return assemble(
         path,
         {**own, **model.choices(), **(slots or {})},

@@ -249,7 +249,7 @@ class Gpu:
 
     def evaluate_model(self, model, signature, *arguments):
         """Values of a function of a model, as `evaluate`; one that draws numbers draws those of the next pass, as its twin does."""
-        include = [f"models/{model.name()}.glsl", "views/random_{random}.glsl"]
+        include = [f"models/{model.name()}.glsl", "views/seeding_{seeding}.glsl"]
 
         def source(call):
             chunk = "".join(f'#include "{path}"\n' for path in include)

@@ -233,9 +233,7 @@ FLOORS = {
     # A ray that goes up ends higher than it begins: depth less the flight, each known to a few roundings.
     "walk.flight": lambda depth, w, area, u: 4 * 1.2e-7 * depth,
     # The exponential leaves float32's range before what it is multiplied by brings the product back.
-    "walk.passage": lambda depth, w, area, wi, hidden: (
-        TINY * np.maximum(1, area * depth / np.abs(w[:, 2])) / wi[:, 2]
-    ),
+    "walk.passage": lambda depth, w, area, wi, hidden: TINY * np.maximum(1, area * depth / np.abs(w[:, 2])) / wi[:, 2],
     # A difference, known to two roundings of each of its terms.
     "fresnel.eta2_cos2_t": lambda c, eta: (
         1.2e-7 * np.where(eta < 0.7, eta**2 + (1 - c) * (1 + c), np.abs(eta**2 - 1) + c**2)

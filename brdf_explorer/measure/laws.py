@@ -155,7 +155,9 @@ def energy(model):
     value, error = value.max(axis=1), error.max(axis=1)
     k = int(np.argmax(value))
     theta = np.degrees(np.arccos(min(wo[k, 2], 1.0)))
-    if model.stochastic:  # the largest of 21 estimates is 5 standard errors too large by a chance of 2e-3, with 15 degrees of freedom
+    if (
+        model.stochastic
+    ):  # the largest of 21 estimates is 5 standard errors too large by a chance of 2e-3, with 15 degrees of freedom
         note = f"largest albedo, at theta {theta:.3g}, less 5 standard errors of {error[k]:.0e}"
         return Law("energy", float(np.max(value - 5 * error)), 1 + QUADRATURE, note)
     note = f"largest albedo, at theta {theta:.3g}, by quadrature within {error[k]:.0e}"

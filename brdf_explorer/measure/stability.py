@@ -40,8 +40,8 @@ NODES = 24
 STEPS = (1, -1, 10, -10)
 """Changes of an argument that its condition is taken from, in UNITs. Ten of them see a kink next to it, as at total reflection,
 where a formula that rounds more than once may end on the other side."""
-PARTS = {"pdf_wi", "weight_wi"}
-"""Functions that are no rows: they are all of pdf and sample_f but for what has a row."""
+PARTS = {"pdf_wi", "weight_wi", "flight"}
+"""Functions that are no rows: they are all of pdf and sample_f but for what has a row, or have values below 0 that mean something."""
 COLORS = ("f", "F", "sample_f", "diffuse_f")
 """Functions whose components are compared each; other vectors are directions, compared relative to their length."""
 
@@ -497,12 +497,14 @@ def _chunk(cls, file, function, choices):
 def _of_model(cls, model, function):
     """A function of a model, its parameters made arguments."""
     params = declared(cls, Param)
-    kinds = {name: kind for kind, name in function.arguments} | {name: p.glsl for name, p in params.items()}
+    whole = {name for name, p in params.items() if p.glsl == "int"}  # a table holds no whole numbers
+    kinds = {name: kind for kind, name in function.arguments}
+    kinds |= {name: "float" if name in whole else p.glsl for name, p in params.items()}
     out = re.search(r", (out \w+ \w+)\)", function.signature)
     takes = ", ".join(f"{kind} {name}" for name, kind in kinds.items()) + (f", {out[1]}" if out else "")
     gives = ", ".join([name for _, name in function.arguments] + ([out[1].split()[-1]] if out else []))
     signature = f"{function.signature.split()[0]} at({takes})"
-    body = f"{signature} {{\n  material = Material({', '.join(params)});\n  return {function.name}({gives});\n}}\n"
+    body = f"{signature} {{\n  material = Material({', '.join(f'int({n})' if n in whole else n for n in params)});\n  return {function.name}({gives});\n}}\n"
     variable = params_glsl("material", cls).replace("uniform Material", "Material")
 
     def source(call, form):

@@ -31,7 +31,9 @@ class Multiscatter(Model):
     alpha: tuple = param((0.2, 0.2), 1e-4, 1.0, "roughness along x and y: scale of the facets' slopes", scale="log")
     eta: tuple = param((0.143, 0.375, 1.442), 0.05, 6.0, "index of refraction at R, G, B, relative to the air's")
     k: tuple = param((3.983, 2.386, 1.603), 0.0, 15.0, "extinction coefficient at R, G, B; 0 for a dielectric")
-    albedo: tuple = param((0.8, 0.8, 0.8), 0.0, 1.0, "share of the light that a diffuse facet reflects, linear RGB", color=True)
+    albedo: tuple = param(
+        (0.8, 0.8, 0.8), 0.0, 1.0, "share of the light that a diffuse facet reflects, linear RGB", color=True
+    )
     first: int = param(1, 1, MOST, "first order of scattering that counts", scale="log")
     orders: int = param(MOST, 1, MOST, "number of orders of scattering that count, from the first on", scale="log")
     facets: str = choice("conductor", ("conductor", "diffuse"), "what a facet does with light")

@@ -30,7 +30,7 @@ uvec3 pcg3d(uvec3 v) {
 vec2 unit_interval(uvec2 bits) { return vec2(bits >> 8u) * (1.0 / 16777216.0); }
 vec3 unit_interval(uvec3 bits) { return vec3(bits >> 8u) * (1.0 / 16777216.0); }
 
-// State of the generator of formulas that draw numbers of their own. Views seed it by pixel and pass (views/random_seeded.glsl).
+// State of the generator of formulas that draw numbers of their own. Views seed it by pixel and pass (views/seeding_pixel.glsl).
 uvec3 random_state = uvec3(0u);
 
 // Three numbers in [0, 1), others at each call.

@@ -1,6 +1,6 @@
 // One evaluation of f a pixel, the directions from its place: what a material costs without its picture.
 #include "models/{model}.glsl"
-#include "views/random_{random}.glsl"
+#include "views/seeding_{seeding}.glsl"
 
 uniform vec2 size;
 out vec4 color;

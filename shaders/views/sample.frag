@@ -1,6 +1,6 @@
 // One direction drawn a pixel, for a viewer and random numbers from its place: what sampling a material costs.
 #include "models/{model}.glsl"
-#include "views/random_{random}.glsl"
+#include "views/seeding_{seeding}.glsl"
 
 uniform vec2 size;
 out vec4 color;

@@ -1,6 +1,6 @@
 // A sphere under an orthographic eye at +z: one ray a pixel and pass, its normal in closed form.
 #include "models/{model}.glsl"
-#include "views/random_{random}.glsl"
+#include "views/seeding_{seeding}.glsl"
 
 uniform vec2 center;   // pixels
 uniform float radius;  // pixels

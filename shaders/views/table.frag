@@ -1,6 +1,6 @@
 // f for one viewer over a table of directions to the light.
 #include "models/{model}.glsl"
-#include "views/random_{random}.glsl"
+#include "views/seeding_{seeding}.glsl"
 
 uniform sampler2D directions;
 uniform vec3 wo;
