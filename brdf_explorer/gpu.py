@@ -248,7 +248,7 @@ class Gpu:
         return wi, weight
 
     def evaluate_model(self, model, signature, *arguments):
-        """Values of a function of a model, as `evaluate`; one that draws numbers draws those of the next pass, as its twin does."""
+        """Values of a function of a model, as `evaluate`; a stochastic one draws the next pass, as its twin does."""
         include = [f"models/{model.name()}.glsl", "views/seeding_{seeding}.glsl"]
 
         def source(call):
