@@ -274,8 +274,8 @@ class Gpu:
         """Values of a GLSL function over tables of arguments, in float32.
 
         source(call) gives the Source of views/probe.frag around the generated `call`. Arguments broadcast like (..., n), a
-        float being n = 1 without the axis. first: statements before the call. Returns the value and then each `out` argument, as a
-        list.
+        float being n = 1 without the axis. first: statements before the call. Returns a list of the value and then each `out`
+        argument.
         """
         function = Signature(signature)
         with np.errstate(under="ignore"):  # what float32 cannot hold is 0

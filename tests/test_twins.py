@@ -14,8 +14,10 @@ import pytest
 from oracles.cases import CASES, case_label, pairwise, typed
 
 from brdf_explorer.glsl import SHADERS, Signature, assemble, functions
-from brdf_explorer.lib.common import PI, TWO_PI, length, normalize, quotient, vec
+from brdf_explorer.lib.common import PI, TWO_PI, dot, length, normalize, quotient, vec
+from brdf_explorer.lib.fresnel import eta2_cos2_t
 from brdf_explorer.lib.random import seeded
+from brdf_explorer.lib.refraction import cos_refracted, refracted, sum_refracted, upward
 from brdf_explorer.model import Choice, Param, declared
 from brdf_explorer.models import MODELS
 
@@ -38,6 +40,7 @@ ONLY_GLSL = {
     "ndf_beckmann": {"leading"},  # of float32's rounding
     "lambert_sphere": {"series"},
     "random": {"drawn"},  # the method of Draws
+    "refraction": {"leading12"},
 }
 COLORS = {"f", "diffuse_f", "F", "tonemap", "srgb_encode"}
 """Functions whose components are compared each; other vectors are compared relative to their length."""
@@ -141,6 +144,32 @@ def sphere(rng, n, size, drawn):
     return rng.permuted(hemisphere(rng, n, size, drawn), axis=-1) * rng.choice((-1, 1), (n, 1))
 
 
+def behind(rng, n, size, drawn):
+    """Below the surface; half of them where a facet with slopes over decades refracts wo to."""
+    below = hemisphere(rng, n, size, drawn) * [1, 1, -1]
+    phi = rng.uniform(0, TWO_PI, n)
+    slope = decades(1e-4, 10)(rng, n, 1, drawn) * vec(np.cos(phi), np.sin(phi))
+    wm, eta = normalize(np.concatenate([slope, np.ones((n, 1))], axis=-1)), drawn["eta"][:, 0]
+    w = refracted(drawn["wo"], wm, eta)
+    near = (rng.random(n) < 0.5) & (eta2_cos2_t(dot(drawn["wo"], wm), eta) > 0) & (w[:, 2] < -1e-4)
+    return np.where(near[:, None], w, below)
+
+
+def facing(rng, n, size, drawn):
+    """Normals that face w, and w itself where light from there would all be reflected."""
+    wm = hemisphere(rng, n, size, drawn)
+    wm = wm - 2 * np.minimum(dot(drawn["w"], wm)[:, None], 0) * drawn["w"]
+    passes = eta2_cos2_t(dot(drawn["w"], wm), drawn["eta"][:, 0]) > 0
+    return np.where(passes[:, None], wm, drawn["w"])
+
+
+def sum_length(rng, n, size, drawn):
+    """Of wo + eta wt, from grazing to straight incidence, on the denser side."""
+    eta = drawn["eta"]
+    least, most = np.abs(eta - 1), np.sqrt(np.abs(eta - 1) * (eta + 1))
+    return least * (most / least) ** rng.random((n, 1))
+
+
 def sine_of(cosine):
     return lambda rng, n, size, drawn: np.sqrt((1 - drawn[cosine]) * (1 + drawn[cosine]))
 
@@ -177,6 +206,10 @@ DRAWS = {
     "depth": either(ZERO, decades(1e-6, 20), uniform(0, 3)),
     "area": either(decades(1e-6, 1), uniform(0, 1)),
     "hidden": either(decades(1e-6, 1), uniform(0, 1)),
+    "wt": behind,
+    "cos_t": COSINE,
+    "L": sum_length,
+    "z": one_plus(decades(1e-6, 1e6)),
     # of one function, whose argument's name says less than its domain
     "exp_precise.x": either(uniform(-87, 88), signed(decades(1e-6, 80))),
     "log_precise.x": either(decades(1e-6, 1e6), one_plus(signed(decades(1e-6, 0.9)))),
@@ -194,13 +227,17 @@ DRAWS = {
     "flight.w": sphere,
     "depth_below.depth": either(decades(1e-6, 20), uniform(1e-6, 3)),
     "cut": either(ZERO, decades(1e-8, 1), uniform(0, 1)),
+    "beta_one_plus.x": either(ZERO, decades(1e-6, 1e6)),
+    "beta_one_plus.y": either(ZERO, decades(1e-6, 1e6), uniform(0, 60)),
+    "refracted.wm": facing,
+    "upward.w": sphere,
     "viridis.x": uniform(-0.1, 1.1),
     "diverging.x": uniform(-1.1, 1.1),
     "environment_uv.w": sphere,
     "environment_direction.u": uniform(0, 1),
     "environment_direction.s": COSINE,
 }
-FIRST = ("alpha", "cos_o")
+FIRST = ("alpha", "cos_o", "eta", "w", "wo")
 """Arguments that others are drawn by."""
 
 
@@ -238,11 +275,18 @@ FLOORS = {
     "fresnel.eta2_cos2_t": lambda c, eta: (
         1.2e-7 * np.where(eta < 0.7, eta**2 + (1 - c) * (1 + c), np.abs(eta**2 - 1) + c**2)
     ),
+    # eta cos_t = t is the root of what is known to 2.4e-7.
+    "refraction.refracted": lambda w, wm, eta: refraction_floor(dot(w, wm), eta),
     # Blacks are differences of numbers near 0.1, and a display value below 1e-6 is black on any screen.
     "tonemap_aces.tonemap": lambda color: 1e-6,
     "tonemap_agx.tonemap": lambda color: 1e-6,
     "tonemap_neutral.tonemap": lambda color: 1e-6,
 }
+
+
+def refraction_floor(c, eta):
+    t = np.sqrt(np.maximum(eta2_cos2_t(c, eta), 1e-7))
+    return 1.2e-7 / t * np.abs(eta * eta - 1) / ((c + t) ** 2 * eta)
 
 
 def near_critical(c, eta, k=0.0, share=1e-6):
@@ -260,6 +304,7 @@ EXEMPT = {
     "fresnel.F_conductor": near_critical,
     "fresnel_dielectric.F": lambda c, eta, k: near_critical(c, eta),
     "fresnel_conductor.F": near_critical,
+    "refraction.refracted": lambda w, wm, eta: near_critical(dot(w, wm), eta, share=1e-5),
 }
 
 
@@ -274,7 +319,7 @@ def relative_error(value, expected, floor=TINY, components=False):
 
 
 def check(error, walks=False):
-    """The requirement on relative errors. walks: of estimates by the same random numbers, whose walks part where rounding decides."""
+    """The requirement on relative errors. walks: of estimates by equal random numbers, whose walks part where rounding decides."""
     __tracebackhide__ = True
     assert np.all(np.isfinite(error))
     common, least, worst = (WALKS, WALKS_SHARE, np.inf) if walks else (COMMON, COMMON_SHARE, WORST)
@@ -380,7 +425,12 @@ def pair(model, rng):
     n = 150 if model.stochastic else 3_000
     wo, wi = (hemisphere(rng, n, 3, {}).astype(np.float32) for _ in range(2))
     sampled = model.sample_f(wo, rng.random((n, 2)))[0].astype(np.float32)
-    near = (rng.random(n) < 0.5) & (sampled[:, 2] >= 1e-4)
+    height = sampled[:, 2]
+    if model.transmits:
+        wo, wi = (w * rng.choice((-1, 1), (n, 1)).astype("f4") for w in (wo, wi))
+        sampled = model.sample_f(wo, rng.random((n, 2)))[0].astype(np.float32)
+        height = np.abs(sampled[:, 2])
+    near = (rng.random(n) < 0.5) & (height >= 1e-4)
     return wo.astype(float), np.where(near[:, None], sampled, wi).astype(float)
 
 
@@ -390,6 +440,8 @@ def exempt(model, wo, wi):
     The cosine has an error of 1.2e-7, so t^2 one of 2.4e-7 c^2. Beyond t = eta^2 / c the slope of F falls as 2 eta^2 / t^2: for
     eta = 0.1, the worst, F errs by more than WORST where t^2 < 1.8e-4 c^2. In angle that is 0.005 degrees.
     """
+    if model.index() is not None:
+        return np.repeat(exempt_of_refraction(wo, wi, np.array(model.index()))[:, None], 3, axis=1)
     if model.choices().get("fresnel") not in ("dielectric", "conductor"):
         return np.zeros((len(wo), 3), dtype=bool)
     k = np.array(model.k) if model.fresnel == "conductor" else 0.0
@@ -398,17 +450,50 @@ def exempt(model, wo, wi):
     return found
 
 
+def refracting(wo, wi, eta):
+    """Of pairs of directions: whether the surface is between them (n,), their sum_refracted, and its facet's cosines (n, 2)."""
+    crosses, above = wo[:, 2] * wi[:, 2] < 0, wo[:, 2:] > 0
+    sum = sum_refracted(np.where(above, wo, wi), np.where(above, wi, wo), eta)
+    sum = np.where(crosses[:, None], sum, [0.0, 0.0, 1.0])
+    return crosses, sum, cos_refracted(length(sum), eta) * vec(1.0, eta)
+
+
+def exempt_of_refraction(wo, wi, eta):
+    """near_critical of what is reflected, (n,); and where the facet is on edge to the surface or to a direction, its normal known
+    to 1e-7: there D ends, for GGX by a step, and what passes.
+    """
+    crosses, sum, c = refracting(wo, wi, eta)
+    outside = near_critical(0.5 * length(upward(wo) + upward(wi)), np.where(wo[:, 2] > 0, eta, 1 / eta), share=2e-4)
+    edge = (np.abs(c).min(axis=-1) < 1e-6 * c.sum(axis=-1)) | (np.abs(sum[:, 2]) < 1e-6 * length(sum))
+    found = np.where(crosses, edge, outside)
+    assert np.mean(found) < 5e-3
+    return found
+
+
+def doubt(model, wo, wi):
+    """The relative error (n,) that a model's f has by the smaller cosine at a facet that refracts, 0 of other models.
+
+    The cosine is a difference of numbers known to four roundings, 2.4e-7; f goes as its square.
+    """
+    if model.index() is None:
+        return np.zeros(len(wo))
+    crosses, _, c = refracting(wo, wi, np.array(model.index()))
+    return np.where(crosses, 2 * 2.4e-7 * c.sum(axis=-1) / np.maximum(np.abs(c).min(axis=-1), 1e-7), 0.0)
+
+
 @pytest.mark.parametrize(("cls", "choices"), CASES, ids=case_label)
 def test_f(gpu, cls, choices):
     rng, errors = np.random.default_rng(1), []
     for model in materials(cls, choices, rng):
         wo, wi = pair(model, rng)
         # D leaves float32's normal range before f = D F G / (4 cos cos) does
-        floor = TINY / np.minimum(4 * wo[:, 2:] * wi[:, 2:], 1)
+        floor = TINY / np.minimum(np.abs(4 * wo[:, 2:] * wi[:, 2:]), 1)
         with seeded(1):
             found = gpu.f(model, wo, wi)
         with seeded(1):
             expected = model.f(wo, wi)
+        with np.errstate(under="ignore"):
+            floor = np.maximum(floor, expected * doubt(model, wo, wi)[:, None])
         errors.append(relative_error(found, expected, floor, True)[~exempt(model, wo, wi)])
     check(np.concatenate(errors), model.stochastic)
 
@@ -418,8 +503,12 @@ def test_pdf(gpu, cls, choices):
     rng, errors = np.random.default_rng(2), []
     for model in materials(cls, choices, rng):
         wo, wi = pair(model, rng)
-        floor = TINY / np.minimum(4 * wo[:, 2], 1)  # as f, with 4 cos (1 + Lambda) below
-        errors.append(relative_error(gpu.pdf(model, wo, wi), model.pdf(wo, wi), floor))
+        floor = TINY / np.minimum(np.abs(4 * wo[:, 2]), 1)  # as f, with 4 cos (1 + Lambda) below
+        expected = model.pdf(wo, wi)
+        with np.errstate(under="ignore"):
+            floor = np.maximum(floor, expected * doubt(model, wo, wi))
+        error = relative_error(gpu.pdf(model, wo, wi), expected, floor)
+        errors.append(error[~exempt(model, wo, wi)[:, 0]] if model.transmits else error)
     check(np.concatenate(errors))
 
 
@@ -435,9 +524,10 @@ def test_sample_f(gpu, cls, choices):
         directions.append(relative_error(wi, model.sample_f(wo, u)[0]))
         wi = wi.astype(float)
         with np.errstate(under="ignore"), seeded(1):  # in the tails of a density
-            expected = quotient(model.f(wo, wi) * wi[:, 2:], model.pdf(wo, wi)[:, None])
+            expected = quotient(model.f(wo, wi) * np.abs(wi[:, 2:]), model.pdf(wo, wi)[:, None])
             # a weight may hold D, which leaves float32's range as in test_f
-            floor = quotient(TINY * wi[:, 2] / np.minimum(4 * wo[:, 2] * wi[:, 2], 1), model.pdf(wo, wi))
+            area = np.abs(wo[:, 2] * wi[:, 2])
+            floor = quotient(TINY * quotient(np.abs(wi[:, 2]), np.minimum(4 * area, 1)), model.pdf(wo, wi))
         floor = np.maximum(floor, TINY)[:, None]
         weights.append(relative_error(weight, expected, floor, True)[~exempt(model, wo, wi)])
     check(np.concatenate(directions))

@@ -86,6 +86,12 @@ class Draws:
         self.states = self.states[which]
 
 
+def third(u):
+    """A third number (...) in [0, 1) from points u (..., 2): their hash, for a sampler that has one decision more to make."""
+    bits = (np.asarray(u, dtype=float) * 2.0**24).astype(np.uint32)
+    return unit_interval(pcg3d(np.concatenate([bits, np.zeros_like(bits[..., :1])], axis=-1))[..., 0])
+
+
 def random2(pixel, index, stream):
     """Point `index` (...) in the unit square (..., 2), by pixel (..., 2) and stream (...), all unsigned integers.
 

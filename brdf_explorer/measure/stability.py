@@ -41,7 +41,7 @@ STEPS = (1, -1, 10, -10)
 """Changes of an argument that its condition is taken from, in UNITs. Ten of them see a kink next to it, as at total reflection,
 where a formula that rounds more than once may end on the other side."""
 PARTS = {"pdf_wi", "weight_wi", "flight"}
-"""Functions that are no rows: they are all of pdf and sample_f but for what has a row, or have values below 0 that mean something."""
+"""Functions that are no rows: all of pdf and sample_f but for what has a row; and a depth, which is below 0 where a ray leaves."""
 COLORS = ("f", "F", "sample_f", "diffuse_f")
 """Functions whose components are compared each; other vectors are directions, compared relative to their length."""
 
@@ -122,7 +122,7 @@ def reflected(slope, share=1.0):
 
 
 def near(signs, off):
-    """Directions next to wo, or a ray w, with the signs of its components changed, turned by `off`; below wo's azimuth at any height."""
+    """Directions next to wo, or a ray w, with the signs of its components changed, turned by `off`; opposite ones at any height."""
 
     def draw(u, size, drawn):
         w = drawn.get("wo", drawn.get("w")) * signs
@@ -504,7 +504,8 @@ def _of_model(cls, model, function):
     takes = ", ".join(f"{kind} {name}" for name, kind in kinds.items()) + (f", {out[1]}" if out else "")
     gives = ", ".join([name for _, name in function.arguments] + ([out[1].split()[-1]] if out else []))
     signature = f"{function.signature.split()[0]} at({takes})"
-    body = f"{signature} {{\n  material = Material({', '.join(f'int({n})' if n in whole else n for n in params)});\n  return {function.name}({gives});\n}}\n"
+    made = ", ".join(f"int({name})" if name in whole else name for name in params)
+    body = f"{signature} {{\n  material = Material({made});\n  return {function.name}({gives});\n}}\n"
     variable = params_glsl("material", cls).replace("uniform Material", "Material")
 
     def source(call, form):

@@ -39,6 +39,12 @@ vec3 drawn() {
   return unit_interval(random_state);
 }
 
+// A third number from a point of the unit square: for a sampler that takes two and has one decision more to make. It is the
+// point's hash, so that it shares no pattern with the two.
+float third(vec2 u) {
+  return unit_interval(pcg3d(uvec3(uvec2(u * 16777216.0), 0u)).xy).x;
+}
+
 // Point `index` in the unit square, by pixel and stream: the sequence rotated by the pixel's hash (Cranley and Patterson
 // 1976), in fixed point, which wraps exactly for every index.
 vec2 random2(uvec2 pixel, uint index, uint stream) {

@@ -9,6 +9,13 @@ uniform float share;   // of this pass in the running mean; 1 for the first, whi
 uniform uint pass;
 out vec4 color;
 
+// The surface's frame where its normal is this one: along the parallels, the meridians, and the normal.
+mat3 frame_at(vec3 normal) {
+  vec3 tangent = normalize(vec3(normal.z, 0.0, -normal.x));
+  return mat3(tangent, cross(normal, tangent), normal);
+}
+
+#include "views/body_{body}.glsl"
 #include "views/sphere_{lighting}.glsl"
 
 void main() {
@@ -23,9 +30,5 @@ void main() {
     p *= edge / r;
     r = edge;
   }
-  vec3 normal = vec3(p, sqrt((1.0 - r) * (1.0 + r)));
-  vec3 tangent = normalize(vec3(normal.z, 0.0, -normal.x));  // along the parallels
-  mat3 frame = mat3(tangent, cross(normal, tangent), normal);
-  vec3 wo = vec3(frame[0].z, frame[1].z, frame[2].z);  // the eye, (0, 0, 1)
-  color = vec4(coverage * radiance(wo, frame), share < 1.0 ? share : coverage);
+  color = vec4(coverage * seen(vec3(p, sqrt((1.0 - r) * (1.0 + r)))), share < 1.0 ? share : coverage);
 }
