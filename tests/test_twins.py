@@ -238,14 +238,14 @@ DRAWS = {
     "environment_direction.s": COSINE,
 }
 FIRST = ("alpha", "cos_o", "eta", "w", "wo")
-"""Arguments that others are drawn by."""
+"""Arguments that others are drawn by, in this order."""
 
 
 def draw(function, n, rng):
     """Arguments of the function, n of each, as float32 or uint32 holds them, in its order."""
     drawn = {}
     kinds = dict(zip((n for _, n in function.arguments), Signature(function.signature).inputs, strict=True))
-    for name in sorted(kinds, key=lambda name: name not in FIRST):
+    for name in sorted(kinds, key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST)):
         how = DRAWS.get(f"{function.name}.{name}", DRAWS.get(name))
         assert how, f"{function.file}: {function.name}: say in DRAWS from where the argument {name} is drawn"
         drawn[name] = how(rng, n, kinds[name].components, drawn).astype(kinds[name].dtype)

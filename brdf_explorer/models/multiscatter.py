@@ -7,8 +7,9 @@ from importlib import import_module
 import numpy as np
 
 from ..lib import slot
-from ..lib.common import HORIZON, above_horizon, quotient, split
+from ..lib.common import quotient, split
 from ..lib.random import Draws, next_pass, random_states
+from ..lib.refraction import apart_from_one
 from ..model import Model, choice, param
 
 MOST = 64
@@ -34,36 +35,51 @@ class Multiscatter(Model):
     albedo: tuple = param(
         (0.8, 0.8, 0.8), 0.0, 1.0, "share of the light that a diffuse facet reflects, linear RGB", color=True
     )
+    eta_below: float = param(
+        1.5, 0.25, 4.0, "index of refraction below the surface over that above, for dielectric facets", scale="log"
+    )
     first: int = param(1, 1, MOST, "first order of scattering that counts", scale="log")
     orders: int = param(MOST, 1, MOST, "number of orders of scattering that count, from the first on", scale="log")
-    facets: str = choice("conductor", ("conductor", "diffuse"), "what a facet does with light")
+    facets: str = choice("conductor", ("conductor", "dielectric", "diffuse"), "what a facet does: mirrors, reflects and refracts, or Lambert's law")
     ndf: str = choice("ggx", ("ggx", "beckmann"), "distribution of the facets' normals")
     fresnel: str = choice("conductor", ("conductor", "dielectric", "schlick", "one"), "reflectance of a facet")
 
+    @property
+    def transmits(self):
+        return self.facets == "dielectric"
+
+    def index(self):
+        return float(apart_from_one(self.eta_below)) if self.transmits else None
+
     def slopes(self):
-        return self.alpha if self.facets == "conductor" else (1.0, 1.0)
+        return (1.0, 1.0) if self.facets == "diffuse" else self.alpha
 
     def f(self, wo, wi):
         wo, wi = np.broadcast_arrays(np.asarray(wo, dtype=float), np.asarray(wi, dtype=float))
-        up = (wo[..., 2] > HORIZON) & (wi[..., 2] > HORIZON)
-        out = np.zeros((*up.shape, 3))
-        states = random_states(up.size, next_pass()).reshape(wo.shape)
-        with np.errstate(under="ignore"):
-            out[up] = self._facets().walk(self, wo[up], wi[up], Draws(states[up]))
+        at = self._facets().counts(wo) & self._facets().counts(wi)
+        out = np.zeros((*at.shape, 3))
+        states = random_states(at.size, next_pass()).reshape(wo.shape)
+        with np.errstate(under="ignore"):  # in the tails of a density
+            out[at] = self._facets().walk(self, wo[at], wi[at], Draws(states[at]))
         return out
 
     def pdf(self, wo, wi):
-        return above_horizon(lambda o, i: self._facets().pdf_lobes(self, o, i), wo, wi)
+        wo, wi = np.broadcast_arrays(np.asarray(wo, dtype=float), np.asarray(wi, dtype=float))
+        at = self._facets().counts(wo) & self._facets().counts(wi)
+        out = np.zeros(at.shape)
+        with np.errstate(under="ignore"):
+            out[at] = self._facets().pdf_lobes(self, wo[at], wi[at])
+        return out
 
     def sample_f(self, wo, u):
         wo, u = np.asarray(wo, dtype=float), np.asarray(u, dtype=float)
         shape = np.broadcast_shapes(wo.shape[:-1], u.shape[:-1])
         wo, u = np.broadcast_to(wo, (*shape, 3)), np.broadcast_to(u, (*shape, 2))
-        wi = np.broadcast_to([0.0, 0.0, 1.0], wo.shape).copy()
-        up = wo[..., 2] > HORIZON
+        wi = np.broadcast_to([1.0, 0.0, 0.0], wo.shape).copy()
+        at = self._facets().counts(wo)
         with np.errstate(under="ignore"):  # of a component of no weight
-            wi[up] = self._facets().sample_lobes(self, wo[up], u[up])
-            weight = self.f(wo, wi) * quotient(split(wi)[2], self.pdf(wo, wi))[..., None]
+            wi[at] = self._facets().sample_lobes(self, wo[at], u[at])
+            weight = self.f(wo, wi) * quotient(np.abs(split(wi)[2]), self.pdf(wo, wi))[..., None]
         return wi, weight
 
     def last_order(self):

@@ -3,11 +3,15 @@
 import numpy as np
 
 from ..lib import slot
-from ..lib.common import INV_PI, dot, mirror, mix, quotient, split, vec
+from ..lib.common import HORIZON, INV_PI, dot, mirror, mix, quotient, split, vec
 from ..lib.microfacet import cos_facet
 from ..lib.walk import flight, passage
 from ..lib.warp import cosine_hemisphere
 from .multiscatter import CLEAR
+
+
+def counts(w):
+    return split(w)[2] > HORIZON
 
 
 def walk(material, wo, wi, draws):

@@ -2,10 +2,14 @@
 
 import numpy as np
 
-from ..lib.common import INV_PI, dot, mirror, normalize, split
+from ..lib.common import HORIZON, INV_PI, dot, mirror, normalize, split
 from ..lib.walk import flight, meeting, passage
 from ..lib.warp import cosine_hemisphere
 from .multiscatter import CLEAR
+
+
+def counts(w):
+    return split(w)[2] > HORIZON
 
 
 def walk(material, wo, wi, draws):

@@ -16,22 +16,23 @@ const float CLEAR = 1e-14;  // a Lambda below this: no facet lies ahead
 
 int last_order() { return min(material.first + material.orders - 1, MOST); }
 
-// All files define these, for directions above the horizon: f by one walk, and a sampler of directions with its density.
+// All files define these: whether f may be other than 0 for a direction, f by one walk, and a sampler of directions with its density.
 #include "models/multiscatter_{facets}.glsl"
 
 vec3 f(vec3 wo, vec3 wi) {
-  if (wo.z <= HORIZON || wi.z <= HORIZON) return vec3(0.0);
+  if (!counts(wo) || !counts(wi)) return vec3(0.0);
   return walk(wo, wi);
 }
 
 float pdf(vec3 wo, vec3 wi) {
-  if (wo.z <= HORIZON || wi.z <= HORIZON) return 0.0;
+  if (!counts(wo) || !counts(wi)) return 0.0;
   return pdf_lobes(wo, wi);
 }
 
 vec3 sample_f(vec3 wo, vec2 u, out vec3 wi) {
-  wi = vec3(0.0, 0.0, 1.0);
-  if (wo.z <= HORIZON) return vec3(0.0);
+  wi = vec3(1.0, 0.0, 0.0);
+  if (!counts(wo)) return vec3(0.0);
   wi = sample_lobes(wo, u);
-  return f(wo, wi) * (wi.z / max(pdf(wo, wi), 1e-37));
+  if (!counts(wi)) return vec3(0.0);
+  return f(wo, wi) * (abs(wi.z) / max(pdf(wo, wi), 1e-37));
 }

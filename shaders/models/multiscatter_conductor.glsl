@@ -2,6 +2,8 @@
 #include "lib/microfacet.glsl"
 #include "lib/warp.glsl"
 
+bool counts(vec3 w) { return w.z > HORIZON; }
+
 // What a facet sends to the end is the mean over the flight that leads to it, so that order 1 is exact: Torrance-Sparrow's, with
 // correlated heights. Of two sharp facets in a row the walk draws the first and meets the second by chance, so a walk begins at
 // either end, and what it finds counts by how likely it was to be found from this one (Veach and Guibas 1995, Eq. 14, of the outer

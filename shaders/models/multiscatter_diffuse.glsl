@@ -1,6 +1,8 @@
 // Slot facets: diffuse, of a given albedo: Lambert's law about each facet's own normal.
 #include "lib/warp.glsl"
 
+bool counts(vec3 w) { return w.z > HORIZON; }
+
 vec3 walk(vec3 wo, vec3 wi) {
   float hidden = projected_area(-wi, material.alpha);
   vec3 w = -wo, weight = vec3(1.0), sum = vec3(0.0);
