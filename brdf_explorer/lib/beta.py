@@ -31,12 +31,13 @@ def rise(z, s):
 
 def beta_one_plus(x, y):
     """B(1 + x, 1 + y) (...), 0 where it is below float64's range."""
-    large, small = np.maximum(x, y), np.minimum(x, y)
+    large, small = np.broadcast_arrays(np.maximum(x, y), np.minimum(x, y))
     product = np.where(small > 512, 0.0, 1.0)
     small = np.minimum(small, 512.0)
+    steps = np.maximum(np.ceil(small) - 1, 0)
     with np.errstate(under="ignore"):
-        while np.any(small > 1):
-            step = small > 1
-            product = np.where(step, product * small / (1 + large + small), product)
-            small = np.where(step, small - 1, small)
-        return product * rise(1.0, small) / ((1 + large + small) * rise(1 + large, small))
+        for k in range(int(steps.max(initial=0))):
+            at = steps > k
+            product[at] *= (small[at] - k) / (1 + large[at] + small[at] - k)
+        rest = small - steps
+        return product * rise(1.0, rest) / ((1 + large + rest) * rise(1 + large, rest))

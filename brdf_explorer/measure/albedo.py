@@ -103,7 +103,7 @@ def integral(function, wo, alpha, tolerance=1e-10, most=512, index=None):
             last, difference = difference, np.abs(value - before)
             envelope = np.maximum(difference, envelope / 4)
             if np.all(difference <= tolerance) or 2 * n > most:
-                chance = np.where(difference > last / 16, envelope, np.sqrt(difference * last))
+                chance = np.where(difference > last / 16, envelope, np.sqrt(difference) * np.sqrt(last))
                 return Integral(value, np.where(difference <= tolerance, difference, chance))
         before, n = value, 2 * n
 

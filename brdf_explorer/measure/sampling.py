@@ -11,6 +11,8 @@ from .grid import grid, place, sides, spread
 
 PSI_BINS, T_BINS, NODES = 12, 12, 12
 """Bins, and nodes a bin each way: more bins would see finer faults, but large ones less, as the statistic's noise grows."""
+FAR_NODES = 32
+"""On the other side of a surface that transmits: there D ends inside of bins, where facets are on edge, for GGX by a step."""
 POOL = 5.0
 """Bins that expect fewer samples are counted together, as the statistic's distribution needs."""
 
@@ -45,19 +47,19 @@ def bins(model, wo):
     A bin is an interval of psi by one of t on the grid that follows the lobe, so the horizon is the last bins' edge and no
     lobe is too sharp for them. They are finer near the peak (t = s^2) and where rays crowd.
     """
-    x, dx = gauss(NODES)
-    fraction = (np.arange(PSI_BINS)[:, None] + x).ravel() / PSI_BINS
     edges = (np.arange(T_BINS + 1) / T_BINS) ** 2
     width = np.diff(edges)
-    t = (edges[:-1, None] + x * width[:, None]).ravel()
     found = []
     for side in sides(wo, model.slopes(), model.index()):
-        psi, turn = spread(side.wo, side.alpha, fraction)
+        nodes = NODES if side.dense == 1 else FAR_NODES
+        x, dx = gauss(nodes)
+        t = (edges[:-1, None] + x * width[:, None]).ravel()
+        psi, turn = spread(side.wo, side.alpha, (np.arange(PSI_BINS)[:, None] + x).ravel() / PSI_BINS)
         g = grid(side.wo, side.alpha, t, psi)
         with np.errstate(under="ignore"):  # in the tails of a density
             mass = model.pdf(wo, side.turned(g.wi)) * g.density
             mass *= (turn * np.tile(dx, PSI_BINS) / PSI_BINS)[:, None] * (width[:, None] * dx).ravel()
-            found.append(mass.reshape(PSI_BINS, NODES, T_BINS, NODES).sum(axis=(1, 3)))
+            found.append(mass.reshape(PSI_BINS, nodes, T_BINS, nodes).sum(axis=(1, 3)))
     return np.stack(found)
 
 
