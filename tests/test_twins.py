@@ -446,7 +446,7 @@ def exempt(model, wo, wi):
         return np.zeros((len(wo), 3), dtype=bool)
     k = np.array(model.k) if model.fresnel == "conductor" else 0.0
     found = near_critical(0.5 * length(wo + wi)[:, None], np.array(model.eta), k, 2e-4)
-    assert np.mean(found) < 5e-3  # even directions meet 8e-4 at most; 15 of 3000 instead of 2.4 are a chance of 1e-8
+    assert np.sum(found) < max(5e-3 * len(wo), 4)  # even directions meet 8e-4 at most; 15 of 3000 instead of 2.4 are a chance of 1e-8
     return found
 
 
@@ -466,7 +466,7 @@ def exempt_of_refraction(wo, wi, eta):
     outside = near_critical(0.5 * length(upward(wo) + upward(wi)), np.where(wo[:, 2] > 0, eta, 1 / eta), share=2e-4)
     edge = (np.abs(c).min(axis=-1) < 1e-6 * c.sum(axis=-1)) | (np.abs(sum[:, 2]) < 1e-6 * length(sum))
     found = np.where(crosses, edge, outside)
-    assert np.mean(found) < 5e-3
+    assert np.sum(found) < max(5e-3 * len(wo), 4)
     return found
 
 
