@@ -471,7 +471,7 @@ def exempt_of_refraction(wo, wi, eta):
 
 
 def doubt(model, wo, wi):
-    """The relative error (n,) that a model's f has by the smaller cosine at a facet that refracts, 0 of other models.
+    """The relative error (n,) that a model's f and pdf have by the smaller cosine at a facet that refracts, 0 of other models.
 
     The cosine is a difference of numbers known to four roundings, 2.4e-7; f goes as its square.
     """
@@ -479,6 +479,11 @@ def doubt(model, wo, wi):
         return np.zeros(len(wo))
     crosses, _, c = refracting(wo, wi, np.array(model.index()))
     return np.where(crosses, 2 * 2.4e-7 * c.sum(axis=-1) / np.maximum(np.abs(c).min(axis=-1), 1e-7), 0.0)
+
+
+def doubt_of_walk(model):
+    """The relative error of f by what a walk's roundings, some eighty of 6e-8, are in units of the slopes' scale."""
+    return 5e-6 / min(model.alpha) if model.stochastic else 0.0
 
 
 @pytest.mark.parametrize(("cls", "choices"), CASES, ids=case_label)
@@ -493,7 +498,7 @@ def test_f(gpu, cls, choices):
         with seeded(1):
             expected = model.f(wo, wi)
         with np.errstate(under="ignore"):
-            floor = np.maximum(floor, expected * doubt(model, wo, wi)[:, None])
+            floor = np.maximum(floor, expected * (doubt(model, wo, wi)[:, None] + doubt_of_walk(model)))
         errors.append(relative_error(found, expected, floor, True)[~exempt(model, wo, wi)])
     check(np.concatenate(errors), model.stochastic)
 
@@ -528,7 +533,8 @@ def test_sample_f(gpu, cls, choices):
             # a weight may hold D, which leaves float32's range as in test_f
             area = np.abs(wo[:, 2] * wi[:, 2])
             floor = quotient(TINY * quotient(np.abs(wi[:, 2]), np.minimum(4 * area, 1)), model.pdf(wo, wi))
-        floor = np.maximum(floor, TINY)[:, None]
+            floor = np.maximum(floor[:, None], expected * doubt_of_walk(model))
+        floor = np.maximum(floor, TINY)
         weights.append(relative_error(weight, expected, floor, True)[~exempt(model, wo, wi)])
     check(np.concatenate(directions))
     check(np.concatenate(weights), model.stochastic)
