@@ -38,7 +38,7 @@ def dense(model, wo, wi):
 
 
 def energy(gpu, model, wo, error, seed=1, n=100_000):
-    """The share of the energy that arrives along wo which is scattered: a Mean, of as many samples as make its error at most that."""
+    """The share of the energy along wo that is scattered: a Mean, of as many samples as make its error at most that."""
     rng, running = np.random.default_rng(seed), Running()
     while running.count < 2 * n or np.any(running.mean().error > error):
         wi, weight = gpu.sample_f(model, wo, rng.integers(0, 2**24, (n, 2)) * 2.0**-24)

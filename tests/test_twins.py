@@ -319,7 +319,7 @@ def relative_error(value, expected, floor=TINY, components=False):
 
 
 def check(error, walks=False):
-    """The requirement on relative errors. walks: of estimates by equal random numbers, whose walks part where rounding decides."""
+    """The requirement on relative errors. walks: of estimates by equal numbers, whose walks part where rounding decides."""
     __tracebackhide__ = True
     assert np.all(np.isfinite(error))
     common, least, worst = (WALKS, WALKS_SHARE, np.inf) if walks else (COMMON, COMMON_SHARE, WORST)
@@ -446,7 +446,9 @@ def exempt(model, wo, wi):
         return np.zeros((len(wo), 3), dtype=bool)
     k = np.array(model.k) if model.fresnel == "conductor" else 0.0
     found = near_critical(0.5 * length(wo + wi)[:, None], np.array(model.eta), k, 2e-4)
-    assert np.sum(found) < max(5e-3 * len(wo), 4)  # even directions meet 8e-4 at most; 15 of 3000 instead of 2.4 are a chance of 1e-8
+    assert np.sum(found) < max(
+        5e-3 * len(wo), 4
+    )  # even directions meet 8e-4 at most; 15 of 3000 instead of 2.4 are a chance of 1e-8
     return found
 
 

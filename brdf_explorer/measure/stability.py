@@ -41,7 +41,7 @@ STEPS = (1, -1, 10, -10)
 """Changes of an argument that its condition is taken from, in UNITs. Ten of them see a kink next to it, as at total reflection,
 where a formula that rounds more than once may end on the other side."""
 PARTS = {"pdf_wi", "weight_wi", "flight"}
-"""Functions that are no rows: all of pdf and sample_f but for what has a row; and a depth, which is below 0 where a ray leaves."""
+"""Functions that are no rows: all of pdf and sample_f but for what has a row; and a depth, below 0 where a ray leaves."""
 COLORS = ("f", "F", "sample_f", "diffuse_f")
 """Functions whose components are compared each; other vectors are directions, compared relative to their length."""
 
@@ -122,7 +122,7 @@ def reflected(slope, share=1.0):
 
 
 def near(signs, off):
-    """Directions next to wo, or a ray w, with the signs of its components changed, turned by `off`; opposite ones at any height."""
+    """Directions next to wo, or a ray w, with the signs of its components changed, turned by `off`; opposite at any height."""
 
     def draw(u, size, drawn):
         w = drawn.get("wo", drawn.get("w")) * signs
