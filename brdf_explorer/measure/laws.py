@@ -74,6 +74,10 @@ class Shader:
     gpu: object
     model: object
 
+    @property
+    def stochastic(self):
+        return self.model.stochastic
+
     def f(self, wo, wi):
         return self.gpu.f(self.model, wo, wi)
 

@@ -18,6 +18,7 @@ from .table import LONGEST, PASSES, progressive
 MARGIN = 44  # points around the half disc, for the angles
 FOOT = 46  # points below it, for values and a note; half of that below a whole disc
 NODES = 385  # of each half of a slice: many more than the lobe has, so that no tip has corners in a large picture
+FEW = 97  # the same of estimates, which are the better for being few
 LINE = 18  # points from one line of the legend to the next
 LETTER = 5.6  # points that a letter of the legend takes, on average
 CHANNELS = ("red", "green", "blue")
@@ -94,7 +95,8 @@ class Polar(Drawn, Diagram):
         shown = model.parts() if material is state.material and self.curves == "materials" else {}
         if len(shown) < 2:
             shown = {material.name: model}
-        runs = [progressive(gpu, m, state.directions, 2, NODES, passes=passes) for m in shown.values()]
+        nodes = FEW if model.stochastic else NODES
+        runs = [progressive(gpu, m, state.directions, 2, nodes, passes=passes) for m in shown.values()]
         last = [next(run) for run in runs]
         while True:
             found, done = [], all(final for _, final in last)
@@ -115,7 +117,8 @@ class Polar(Drawn, Diagram):
                         found.append(Slice(channel, channel, theta[0], *one))
                 else:
                     one = (None if v is None else luminance(v) for v in (values[0], double, errors[0]))
-                    found.append(Slice(material.name, index, theta[0], *one))
+                    name = f"{material.name}, all" if len(shown) > 1 else material.name
+                    found.append(Slice(name, index, theta[0], *one))
             yield found, last[0][0][0].walks, done
             if done:
                 return
