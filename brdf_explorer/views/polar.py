@@ -25,7 +25,7 @@ CHANNELS = ("red", "green", "blue")
 LETTERS = 10  # that a line of the legend has room for at least
 
 
-ORDERS = ("accent", "purple", "green")  # colours of the parts of a material
+ORDERS = ("red", "purple", "green")  # colours of the parts of a material
 
 
 class Slice(NamedTuple):
