@@ -760,15 +760,16 @@ def print_stability(found, name):
     from .measure.stability import FORMS, REGIMES
     from .views.stability import FORM_WORDS, summary
 
+    columns = [column for column in REGIMES if any((row, column, FORMS[0]) in found.cells for row in found.rows)]
     rows = []
     for row in found.rows:
         for form in FORMS:
-            cells = [found.cells.get((row, column, form)) for column in REGIMES]
+            cells = [found.cells.get((row, column, form)) for column in columns]
             if any(cells):
                 rows.append(
                     (row if form == FORMS[0] else "", FORM_WORDS[form], *(c and summary(c) or "" for c in cells))
                 )
-    print_table(("function", "form", *(column.replace("_", " ") for column in REGIMES)), rows, title=name)
+    print_table(("function", "form", *(column.replace("_", " ") for column in columns)), rows, title=name)
 
 
 @main.command()

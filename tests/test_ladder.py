@@ -8,7 +8,7 @@ from brdf_explorer.models import MODELS
 from brdf_explorer.state import Material, State
 
 STATES = [State((Material("", MODELS["microfacet"](ndf=ndf, k=k)),)) for ndf in ("ggx", "beckmann") for k in (0.0, 3.0)]
-STATES.append(State((Material("", MODELS["diffuse"]()),)))
+STATES += [State((Material("", MODELS[name]()),)) for name in ("diffuse", "dielectric")]
 
 
 @pytest.mark.parametrize("ladder", LADDERS.values(), ids=LADDERS)
@@ -23,7 +23,7 @@ def test_every_method_can_be_chosen_and_is_recognised(ladder):
 
 def test_ladders_of_choices_name_every_option():
     """A new option joins a ladder, or is `one`, which is not an answer to the ladder's question."""
-    for name in ("smith", "shadowing", "fresnel", "diffuse", "sampling"):
+    for name in ("smith", "shadowing", "masking", "fresnel", "diffuse", "sampling"):
         options = {o for model in MODELS.values() for n, d in declared(model).items() if n == name for o in d.options}
         methods = [m for ladder in LADDERS.values() for m in ladder.methods if m.changes and list(m.changes) == [name]]
         assert {m.name for m in methods} == options - {"one"}

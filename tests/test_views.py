@@ -213,7 +213,7 @@ def test_a_drawing_draws_fills_lines_and_pictures_in_order(gpu):
     assert linked(picture.links, (30, 20)).state == State() and linked(picture.links, (30, 5)) is None
 
 
-@pytest.mark.parametrize("name", ["gold", "ceramic", "glass", "brushed_aluminium"])
+@pytest.mark.parametrize("name", ["gold", "ceramic", "glass", "frosted_glass", "brushed_aluminium"])
 def test_factors_multiply_to_f(gpu, name):
     state = load(name)
     theta, values = state.views["factors"].curves(gpu, state)

@@ -1,3 +1,3 @@
 #include "lib/srgb.glsl"
 
-float quantity(vec3 wo, vec3 wi) { return luminance(f(wo, wi)) * abs(wi.z); }
+float quantity(vec3 wo, vec3 wi) { return luminance(mean_f(wo, wi, walks)) * abs(wi.z); }
