@@ -222,7 +222,7 @@ DRAWS = {
     "sample_wm.wo": visible,
     "visible_slope_beckmann.cos_o": cosine_visible,
     "mean_exp.x": either(ZERO, decades(1e-6, 100), uniform(0, 3)),
-    "meeting.w": sphere,
+    "meets.w": sphere,
     "passage.w": sphere,
     "flight.w": sphere,
     "depth_below.depth": either(decades(1e-6, 20), uniform(1e-6, 3)),
