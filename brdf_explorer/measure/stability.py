@@ -525,8 +525,8 @@ def subjects(model):
             there = hasattr(slot(file[4:-5]), function.name)
             if there and function.name in called - PARTS - {s.name for s in found}:
                 found.append(_chunk(cls, file, function, chosen))
-    # of an estimate one value says nothing; its parts have rows
-    own = ("pdf",) if model.stochastic else ("f", "pdf", "sample_f")
+    # of an estimate one value says nothing; its parts have rows, and so have those of a pdf of both sides
+    own = ("f", "pdf", "sample_f") if not model.stochastic else () if model.transmits else ("pdf",)
     return found + [_of_model(cls, model, function) for function in functions(path) if function.name in own]
 
 
