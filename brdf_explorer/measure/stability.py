@@ -42,7 +42,7 @@ NODES = 24
 STEPS = (1, -1, 10, -10)
 """Changes of an argument that its condition is taken from, in UNITs. Ten of them see a kink next to it, as at total reflection,
 where a formula that rounds more than once may end on the other side."""
-PARTS = {"pdf_wi", "weight_wi", "refracted", "upward", "apart_from_one", "third", "flight"}
+PARTS = {"pdf_wi", "weight_wi", "refracted", "upward", "apart_from_one", "third", "flight", "exp_precise"}
 """Functions that are no rows: all of pdf and sample_f but for what has a row, or round nothing; and a depth, below 0 where a ray
 leaves."""
 COLORS = ("f", "F", "sample_f", "diffuse_f")
