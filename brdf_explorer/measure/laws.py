@@ -101,16 +101,18 @@ def reciprocity(model, rng, n=4000):
     """
     dense = (model.index() or 1.0) ** -2.0
     if model.stochastic:
-        wo, wi, walks = *(above(rng, 32, 0.05, model.transmits) for _ in range(2)), n // 8
-        sampled = model.sample_f(wo, rng.random((32, 2)))[0]
-        wi = np.where(((rng.random(32) < 0.5) & (np.abs(sampled[:, 2]) > 0.05))[:, None], sampled, wi)
-        means = [
-            np.array(mean_f(model, a, b, walks)) * np.where(a[:, 2:] < 0, dense, 1.0) for a, b in ((wo, wi), (wi, wo))
-        ]
-        (there, back), errors = np.array(means)[:, 0], np.array(means)[:, 1]
-        # a difference of what rounding leaves of two equal numbers is none, and of what is rare all or nothing is found
-        known = there + back > 1e-6 * np.max(there + back)
-        error = np.where(known, quotient(np.abs(there - back), np.hypot(*errors) + 1e-12 * there), 0.0)
+        with np.errstate(under="ignore"):  # in the tails of a density
+            wo, wi, walks = *(above(rng, 32, 0.05, model.transmits) for _ in range(2)), n // 8
+            sampled = model.sample_f(wo, rng.random((32, 2)))[0]
+            wi = np.where(((rng.random(32) < 0.5) & (np.abs(sampled[:, 2]) > 0.05))[:, None], sampled, wi)
+            means = [
+                np.array(mean_f(model, a, b, walks)) * np.where(a[:, 2:] < 0, dense, 1.0)
+                for a, b in ((wo, wi), (wi, wo))
+            ]
+            (there, back), errors = np.array(means)[:, 0], np.array(means)[:, 1]
+            # a difference of what rounding leaves of two equal numbers is none, and of what is rare all or nothing is found
+            known = there + back > 1e-6 * np.max(there + back)
+            error = np.where(known, quotient(np.abs(there - back), np.hypot(*errors) + 1e-12 * there), 0.0)
         note = f"sigma, of the means of {walks} estimates, largest {_where(wo, wi, error)}"
         return Law("reciprocity", float(error.max()), 6.0, note)
     wo, wi, u = adversarial(rng, n, model.transmits)
