@@ -164,7 +164,7 @@ def walk(gpu, repeats, size, ndf):
     # what is scattered from order k on is, where nothing is lost, the chance to meet k facets
     white = replace(material, fresnel="one")
     wo, u = direction(np.radians(25.0), 0.0), np.random.default_rng(1).random((50_000, 2))
-    facets = sum(float(gpu.sample_f(replace(white, first=k), wo, u)[1][:, 0].mean()) for k in range(1, 13))
+    facets = sum(float(gpu.sample_f(replace(white, lowest=k), wo, u)[1][:, 0].mean()) for k in range(1, 13))
     name = f"a walk of {ndf}, alpha = 0.5, over its {facets:.2f} facets x the evaluations for one"
     return figure(name, bare["walk"] / (facets * bare["step"]), limit=3)
 

@@ -64,7 +64,7 @@ def test_a_walk_leaves_before_its_last_order(gpu, facets):
     """The energy of eight orders falls by more than 10 from 17 on, so beyond 64 lies less than 1e-9."""
     energies = []
     for first in (17, 25):
-        model = Multiscatter(alpha=1.0, first=first, orders=8, **WHITE[facets])
+        model = Multiscatter(alpha=1.0, lowest=first, orders=8, **WHITE[facets])
         energies.append(energy(gpu, model, sees(0.0), np.inf).value[0])
     assert energies[0] < 1e-3 and energies[1] < 0.15 * energies[0] + 1e-9
     assert MOST == 64 and 0.15 ** ((MOST - 32) / 8) * energies[1] < 1e-7
@@ -77,7 +77,7 @@ def test_orders_add_up(facets):
     found = []
     for first, orders in ((1, 1), (2, 1), (3, MOST), (1, MOST)):
         with seeded(3):
-            found.append(Multiscatter(alpha=0.7, first=first, orders=orders, **WHITE[facets]).f(wo, wi))
+            found.append(Multiscatter(alpha=0.7, lowest=first, orders=orders, **WHITE[facets]).f(wo, wi))
     np.testing.assert_allclose(sum(found[:3]), found[3], rtol=1e-12, atol=1e-300)
     assert np.all(found[0].mean(axis=0) > 0) and np.all(found[2].mean(axis=0) > 0)
 

@@ -8,7 +8,7 @@ import numpy as np
 from .grid import Grid, grid, sides, spread
 from .noise import Running
 
-NODES, REPEATS = 16, 16
+NODES, REPEATS = 24, 16
 """Rays, and directions a ray, of a grid of estimates, and how many of these are averaged."""
 
 

@@ -38,8 +38,8 @@ class Multiscatter(Model):
     eta_below: float = param(
         1.5, 0.25, 4.0, "index of refraction below the surface over that above, for dielectric facets", scale="log"
     )
-    first: int = param(1, 1, MOST, "first order of scattering that counts", scale="log")
-    orders: int = param(MOST, 1, MOST, "number of orders of scattering that count, from the first on", scale="log")
+    lowest: int = param(1, 1, MOST, "lowest order of scattering that counts", scale="log")
+    orders: int = param(MOST, 1, MOST, "number of orders of scattering that count, from the lowest on", scale="log")
     facets: str = choice(
         "conductor",
         ("conductor", "dielectric", "diffuse"),
@@ -62,9 +62,9 @@ class Multiscatter(Model):
         """The orders of scattering."""
         last, found = self.last_order(), {}
         for name, low, high in (("order 1", 1, 1), ("order 2", 2, 2), ("orders 3 and up", 3, MOST)):
-            low, high = max(low, self.first), min(high, last)
+            low, high = max(low, self.lowest), min(high, last)
             if low <= high:
-                found[name] = replace(self, first=low, orders=high - low + 1)
+                found[name] = replace(self, lowest=low, orders=high - low + 1)
         return found
 
     def f(self, wo, wi):
@@ -96,7 +96,7 @@ class Multiscatter(Model):
         return wi, weight
 
     def last_order(self):
-        return min(self.first + self.orders - 1, MOST)
+        return min(self.lowest + self.orders - 1, MOST)
 
     def D(self, wm):
         return slot("ndf", self.ndf).D(wm, np.array(self.alpha))

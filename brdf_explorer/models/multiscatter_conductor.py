@@ -39,7 +39,7 @@ def walk(material, wo, wi, draws):
         ahead = area > CLEAR * split(w)[2]
         row, w, depth, weight = keep(ahead)
         area = area[ahead]
-        if order >= material.first:
+        if order >= material.lowest:
             density = material.D(wi[row] - w)
             share = density / (4 * area) * passage(depth, w, area, wi[row], hidden[row])
             if order > 1:

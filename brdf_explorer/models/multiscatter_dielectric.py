@@ -84,7 +84,7 @@ def walk(material, wo, wi, draws):
         row, w, depth, to, above, area = (a[ahead] for a in (row, w, depth, to, above, area))
         next = flight(depth, w, area, draws.drawn()[:, :2])
         met = next >= 0
-        if order >= material.first:
+        if order >= material.lowest:
             density, share, n2 = np.zeros(len(row)), np.zeros(len(row)), np.ones(len(row))
             at = to[:, 2] > 0
             density[at] = mirroring(material, -w[at], to[at], above[at])

@@ -31,7 +31,7 @@ def walk(material, wo, wi, draws):
         wm = material.sample_wm(-w, u[met, 1:])
         weight = weight * np.array(material.albedo)
         share = passage(depth, w, area, wi[row], hidden[row]) / meets(depth, w, area)
-        if order >= material.first:
+        if order >= material.lowest:
             total[row] += weight * (INV_PI * np.maximum(dot(wi[row], wm), 0.0) * share)[:, None]
         depth = next[met]
         w = mirror(cosine_hemisphere(draws.drawn()[:, :2]), normalize(wm + [0.0, 0.0, 1.0]))

@@ -25,7 +25,7 @@ CHANNELS = ("red", "green", "blue")
 LETTERS = 10  # that a line of the legend has room for at least
 
 
-ORDERS = ("red", "purple", "green")  # colours of the parts of a material
+PARTS = ("red", "purple", "green")  # colours of the parts of a material
 
 
 class Slice(NamedTuple):
@@ -87,7 +87,6 @@ class Polar(Drawn, Diagram):
                 return
             last = [next(run, (found, walks, True)) for run, (found, walks, _) in zip(runs, last, strict=True)]
 
-    @np.errstate(under="ignore")  # in the tails of a density
     def of_material(self, gpu, state, index, passes):
         """Yield (Slices, walks, done) of one material."""
         material = self.materials(state)[index]
@@ -99,30 +98,38 @@ class Polar(Drawn, Diagram):
         runs = [progressive(gpu, m, state.directions, 2, nodes, passes=passes) for m in shown.values()]
         last = [next(run) for run in runs]
         while True:
-            found, done = [], all(final for _, final in last)
-            for side in range(len(last[0][0])):
-                tables = [one[side] for one, _ in last]
-                theta, wi, f = zip(*(t.plane() for t in tables), strict=True)
-                cos = np.reshape(self.factor(wi[0]), (-1, 1))
-                values = [v * cos for v in f]
-                errors = [None if t.error is None else t.along(t.error) * cos for t in tables]
-                if len(shown) > 1:
-                    for k, (name, v, e) in enumerate(zip(shown, values, errors, strict=True)):
-                        found.append(Slice(name, ORDERS[k], theta[0], luminance(v), None, luminance(e)))
-                    values, errors = [sum(values)], [np.sqrt(sum(e**2 for e in errors))]
-                double = None if model.stochastic else model.f(tables[0].wo, wi[0]) * cos
-                if self.curves == "rgb":
-                    for c, channel in enumerate(CHANNELS):
-                        one = (None if v is None else v[:, c] for v in (values[0], double, errors[0]))
-                        found.append(Slice(channel, channel, theta[0], *one))
-                else:
-                    one = (None if v is None else luminance(v) for v in (values[0], double, errors[0]))
-                    name = f"{material.name}, all" if len(shown) > 1 else material.name
-                    found.append(Slice(name, index, theta[0], *one))
+            sides = zip(*(tables for tables, _ in last), strict=True)
+            found = [
+                s for tables in sides for s in self.of_tables(material, index, dict(zip(shown, tables, strict=True)))
+            ]
+            done = all(final for _, final in last)
             yield found, last[0][0][0].walks, done
             if done:
                 return
             last = [next(run, (one, True)) for run, (one, _) in zip(runs, last, strict=True)]
+
+    @np.errstate(under="ignore")  # in the tails of a density
+    def of_tables(self, material, index, tables):
+        """The Slices of one side of the surface, by Tables of a material or by name of its parts."""
+        theta, wi, f = zip(*(t.plane() for t in tables.values()), strict=True)
+        theta, wi, wo = theta[0], wi[0], next(iter(tables.values())).wo
+        cos = np.reshape(self.factor(wi), (-1, 1))
+        values = [v * cos for v in f]
+        errors = [None if t.error is None else t.along(t.error) * cos for t in tables.values()]
+        found, name = [], material.name
+        if len(tables) > 1:
+            for role, part, v, e in zip(PARTS, tables, values, errors, strict=False):
+                found.append(Slice(part, role, theta, luminance(v), None, luminance(e)))
+            values, errors = [sum(values)], [np.sqrt(sum(e**2 for e in errors))]
+            name = f"{name}, all"
+        double = None if material.model.stochastic else material.model.f(wo, wi) * cos
+        columns = (values[0], double, errors[0])
+        if self.curves == "rgb":
+            for c, channel in enumerate(CHANNELS):
+                found.append(Slice(channel, channel, theta, *(None if v is None else v[:, c] for v in columns)))
+        else:
+            found.append(Slice(name, index, theta, *(None if v is None else luminance(v) for v in columns)))
+        return found
 
     @np.errstate(under="ignore")
     def table_of(self, gpu, state):

@@ -14,7 +14,7 @@
 const int MOST = 64;
 const float CLEAR = 1e-14;  // a Lambda below this: no facet lies ahead
 
-int last_order() { return min(material.first + material.orders - 1, MOST); }
+int last_order() { return min(material.lowest + material.orders - 1, MOST); }
 
 // All files define these: whether f may be other than 0 for a direction, f by one walk, and a sampler of directions with its density.
 #include "models/multiscatter_{facets}.glsl"

@@ -20,7 +20,7 @@ vec3 walk(vec3 wo, vec3 wi) {
   for (int order = 1; order <= last; ++order) {
     float area = projected_area(-w, material.alpha);
     if (area <= CLEAR * w.z) break;
-    float density = order < material.first ? 0.0 : D(end - w, material.alpha);
+    float density = order < material.lowest ? 0.0 : D(end - w, material.alpha);
     if (density > 0.0) {
       float share = density / (4.0 * area) * passage(depth, w, area, end, hidden);
       if (order > 1) share *= 2.0 * outer / (outer + density / back);

@@ -55,10 +55,10 @@ vec3 walk(vec3 wo, vec3 wi) {
     if (area <= CLEAR * w.z) break;
     float next = flight(depth, w, area, drawn().xy);
     float density = 0.0, share = 0.0;
-    if (order >= material.first && to.z > 0.0) {
+    if (order >= material.lowest && to.z > 0.0) {
       density = mirroring(-w, to, above);
       share = passage(depth, w, area, to, hidden);
-    } else if (order >= material.first && next >= 0.0) {
+    } else if (order >= material.lowest && next >= 0.0) {
       density = passing(-w, to, above);
       share = exp_precise(-depth_below(next) * hidden / height) / height * dense(!above);
     }

@@ -56,7 +56,7 @@ def material(cls, choices, rng):
         values = values if rng.random() < 0.5 else values[:1].repeat(p.size)
         drawn[name] = typed(p, np.clip(values, p.low, p.high))
     if cls.stochastic:  # most walks have not one of the later orders
-        drawn["first"] = 1
+        drawn["lowest"] = 1
     return cls(**choices, **drawn)
 
 
