@@ -247,3 +247,10 @@ def test_scene_matters(gpu):
         answer = result(least(gpu, state, 0.05, ladders=ladders, prices=prices))
         methods[scene] = answer.steps[0].chosen.name
     assert methods["white_furnace"] != methods["one_light"] == "none"
+
+
+def test_a_ball_with_light_inside_is_refused(gpu):
+    with pytest.raises(
+        Invalid, match=r"Glass: light inside a ball is not compared here; `chart` compares f of its methods"
+    ):
+        result(least(gpu, load("glass", load("studio"))))

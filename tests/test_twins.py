@@ -18,6 +18,7 @@ from brdf_explorer.lib.common import PI, TWO_PI, dot, length, normalize, quotien
 from brdf_explorer.lib.fresnel import eta2_cos2_t
 from brdf_explorer.lib.random import seeded
 from brdf_explorer.lib.refraction import cos_refracted, refracted, sum_refracted, upward
+from brdf_explorer.measure.laws import doubt
 from brdf_explorer.model import Choice, Param, declared
 from brdf_explorer.models import MODELS
 
@@ -471,15 +472,9 @@ def exempt_of_refraction(wo, wi, eta):
     return found
 
 
-def doubt(model, wo, wi):
-    """The relative error (n,) that a model's f and pdf have by the smaller cosine at a facet that refracts, 0 of other models.
-
-    The cosine is a difference of numbers known to four roundings, 2.4e-7; f goes as its square.
-    """
-    if model.index() is None:
-        return np.zeros(len(wo))
-    crosses, _, c = refracting(wo, wi, np.array(model.index()))
-    return np.where(crosses, 2 * 2.4e-7 * c.sum(axis=-1) / np.maximum(np.abs(c).min(axis=-1), 1e-7), 0.0)
+def known_to(model, wo, wi):
+    """The relative error (n,) that a model's f has where a facet that refracts is seen on edge; 0 of other models."""
+    return np.zeros(len(wo)) if model.index() is None else doubt(model, wo, wi)
 
 
 def doubt_of_walk(model):
@@ -499,7 +494,7 @@ def test_f(gpu, cls, choices):
         with seeded(1):
             expected = model.f(wo, wi)
         with np.errstate(under="ignore"):
-            floor = np.maximum(floor, expected * (doubt(model, wo, wi)[:, None] + doubt_of_walk(model)))
+            floor = np.maximum(floor, expected * (known_to(model, wo, wi)[:, None] + doubt_of_walk(model)))
         errors.append(relative_error(found, expected, floor, True)[~exempt(model, wo, wi)])
     check(np.concatenate(errors), model.stochastic)
 
@@ -512,7 +507,7 @@ def test_pdf(gpu, cls, choices):
         floor = TINY / np.minimum(np.abs(4 * wo[:, 2]), 1)  # as f, with 4 cos (1 + Lambda) below
         expected = model.pdf(wo, wi)
         with np.errstate(under="ignore"):
-            floor = np.maximum(floor, expected * doubt(model, wo, wi))
+            floor = np.maximum(floor, expected * known_to(model, wo, wi))
         error = relative_error(gpu.pdf(model, wo, wi), expected, floor)
         errors.append(error[~exempt(model, wo, wi)[:, 0]] if model.transmits else error)
     check(np.concatenate(errors))
