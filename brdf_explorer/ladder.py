@@ -99,6 +99,11 @@ def absorbs(state):
     return "k is not 0" if max(state.model.k) > 0 else ""
 
 
+def mirrors(model):
+    """Whether a facet's reflectance is Fresnel's at complex indices."""
+    return getattr(model, "facets", "conductor") == "conductor" and getattr(model, "facet", "lobe") == "lobe"
+
+
 def of_no_metal(state):
     return "no spectrum is chosen: the same as conductor" if state.model.spectrum == "none" else ""
 
@@ -153,7 +158,7 @@ LADDERS = {
             "How exact must the reflectance of a facet be?",
             "f",
             ("constant", "schlick", "f82", "dielectric", "conductor", "spectral"),
-            applies=lambda model: model.fresnel != "one",
+            applies=lambda model: model.fresnel != "one" and mirrors(model),
             outside={"dielectric": absorbs, "spectral": of_no_metal},
             own={"spectral": of_spectrum},
         ),

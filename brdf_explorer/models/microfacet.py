@@ -8,7 +8,7 @@ from ..lib import slot
 from ..lib.common import HORIZON, above_horizon, split
 from ..lib.microfacet import cos_facet
 from ..model import Model, choice
-from . import facets
+from . import microsurface
 
 
 @dataclass(frozen=True)
@@ -19,22 +19,22 @@ class Microfacet(Model):
     seen along the normal (its albedo is 1 - ln 2), and transmission.
     """
 
-    alpha: tuple = facets.alpha(0.2)
-    eta: tuple = facets.eta()
-    k: tuple = facets.k()
-    ndf: str = facets.ndf()
-    shadowing: str = facets.shadowing()
-    fresnel: str = facets.fresnel()
-    spectrum: str = facets.spectrum()
+    alpha: tuple = microsurface.alpha(0.2)
+    eta: tuple = microsurface.eta()
+    k: tuple = microsurface.k()
+    ndf: str = microsurface.ndf()
+    shadowing: str = microsurface.shadowing()
+    fresnel: str = microsurface.fresnel()
+    spectrum: str = microsurface.spectrum()
     sampling: str = choice(
         "caps",
         ("uniform", "cosine", "ndf", "visible", "caps", "bounded"),
         "how sample_f draws directions: over the hemisphere, by D, or by the normals that the viewer sees",
     )
-    smith: str = facets.smith()
+    smith: str = microsurface.smith()
 
     def slots(self):
-        return facets.filled(self.choices())
+        return microsurface.filled(self.choices())
 
     def slopes(self):
         return self.alpha
