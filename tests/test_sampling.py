@@ -56,7 +56,10 @@ def least(tests):
 
 def test_samplers_are_told_apart():
     assert {c["sampling"] for cls, c in SAMPLERS if cls is Microfacet and c["ndf"] == "ggx"} == set(SAMPLING)
-    assert len([c for cls, c in SAMPLERS if cls is Microfacet and c["ndf"] == "beckmann"]) == 2  # ndf and visible
+    alone = [
+        c for cls, c in SAMPLERS if cls is Microfacet and c["energy"] != "kulla_conty"
+    ]  # which has a lobe of its own
+    assert len([c for c in alone if c["ndf"] == "beckmann"]) == 2  # ndf and visible
 
 
 @pytest.mark.parametrize("twin", ["float64", "float32"])
@@ -80,7 +83,7 @@ def test_pdf_integrates_to_the_share_above_the_horizon(cls, choices):
         for wo in viewers():
             mass = integral(lambda o, i, m=model: m.pdf(o, i)[..., None], wo, model.slopes())
             assert mass.error[0] < 1e-8 and mass.value[0] < 1 + 1e-9
-            assert bins(model, wo).sum() == pytest.approx(mass.value[0], abs=1e-6)
+            assert bins(model, wo).sum() == pytest.approx(mass.value[0], abs=5e-6)  # samples are off by 1000 times this
             up = model.sample_f(wo, rng.random((10_000, 2)))[0][:, 2] > HORIZON
             p.append(binomtest(int(up.sum()), up.size, min(mass.value[0], 1.0)).pvalue)
     assert -np.expm1(len(p) * np.log1p(-min(min(p), 1 - 1e-16))) > LEVEL

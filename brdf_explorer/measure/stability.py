@@ -456,6 +456,8 @@ def subjects(model):
     """The Subjects of a material: the functions of chunks that its shader calls, and its own."""
     cls, path = type(model), f"models/{model.name()}.glsl"
     text = read(path, [])
+    for include in re.findall(r'#include "(models/[^"]+)"', text):
+        text += read(filled(include, model.choices(), path), [path])
     called = set(re.findall(r"\b(\w+)\(", text))
     found = []
     for include in re.findall(r'#include "(lib/[^"]+)"', text):
@@ -746,7 +748,8 @@ SWAPPED = {"wo": "wi", "wi": "wo", "Lambda_o": "Lambda_i", "Lambda_i": "Lambda_o
 
 
 def reciprocity(gpu, subject, form, batch):
-    """Largest relative change under an exchange of light and viewer, where f or G2 is well conditioned, and at which point."""
+    """Largest relative change under an exchange of light and viewer, beyond that of the float64 value, where f or G2 is well
+    conditioned, and at which point."""
     if subject.name not in ("f", "G2"):
         return 0.0, 0
     arguments = {name: batch.arguments[SWAPPED.get(name, name)] for name in batch.arguments}
@@ -760,7 +763,9 @@ def reciprocity(gpu, subject, form, batch):
     asked = np.flatnonzero(np.max(change, axis=1) > LIMIT)
     if len(asked):  # of these the condition may not be known yet
         condition = subject.condition({name: v[asked] for name, v in batch.arguments.items()})
-        change[asked] = np.where(condition * UNIT > WELL, 0.0, change[asked])
+        exact = subject.exact({name: v[asked] for name, v in arguments.items()})
+        own = np.abs(batch.exact[asked] - exact) / np.maximum(size, floor)[asked]
+        change[asked] = np.where(condition * UNIT > WELL, 0.0, np.maximum(change[asked] - own, 0.0))
     change = np.max(change, axis=1)
     k = int(np.argmax(change))
     return float(change[k]), k

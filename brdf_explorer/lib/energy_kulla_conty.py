@@ -1,0 +1,44 @@
+"""Slot energy: what single scattering loses is added as a wide lobe.
+
+Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks", after Kelemen and Szirmay-Kalos 2001:
+(1 - E(wo)) (1 - E(wi)) / (pi (1 - E_mean)), times F_multiple. With white facets the albedo is 1; reciprocal. Leaves out that
+the second reflection keeps something of the lobe while alpha is small.
+"""
+
+import numpy as np
+
+from .common import PI, TWO_PI, split, vec
+
+
+def F_multiple(F_mean, lost_mean):
+    """What facets that each reflect F_mean (..., 3) return of the light that one reflection lost.
+
+    Of each further reflection E_mean = 1 - lost_mean leaves. Two at least have been made, so F_mean counts twice.
+    """
+    lost_mean = np.asarray(lost_mean)[..., None]
+    return F_mean * F_mean * ((1 - lost_mean) / (1 - F_mean * lost_mean))
+
+
+def wide(lost_o, lost_i, lost_mean):
+    """The lobe of white facets, 1/sr."""
+    return lost_o * lost_i / (PI * lost_mean)
+
+
+def share_wide(F0, lost_o):
+    """The share of directions drawn from sample_wide: its share of the light, F being the mean colour F0."""
+    F = np.mean(F0, axis=-1)
+    return F * lost_o / (1 - lost_o + F * lost_o)
+
+
+def sample_wide(u, a):
+    """Directions (..., 3) with a density proportional to cos / (cos^2 + a^2), a being alpha_mean."""
+    x, y = split(u)
+    with np.errstate(under="ignore"):  # of a component of no length
+        z2 = np.minimum(a * a * np.expm1(x * np.log1p(1 / (a * a))), 1.0)
+        phi, r = TWO_PI * y, np.sqrt(1 - z2)
+        return vec(r * np.cos(phi), r * np.sin(phi), np.sqrt(z2))
+
+
+def pdf_wide(wi, a):
+    z = split(wi)[2]
+    return z / (PI * (z * z + a * a) * np.log1p(1 / (a * a)))
