@@ -23,7 +23,7 @@ from .state import LARGEST, State, dumps, replacing
 from .views.develop import develop
 from .views.drawing import Drawn, Fill, Raster
 from .views.picture import PALETTES, Label
-from .views.table import NODES, RAYS, table
+from .views.table import NODES, RAYS, tables
 
 KEY = "brdf-explorer"  # the PNG text, EXR attribute and NPZ array that holds the preset
 SOFTWARE = f"brdf-explorer {__version__}"
@@ -291,19 +291,24 @@ def save_table(gpu, state, path, rays=RAYS, nodes=NODES):
         raise Invalid(f"rays = {rays} is not an even number from 4 to {most}")
     if not (3 <= nodes <= most and nodes % 2 == 1):
         raise Invalid(f"nodes = {nodes} is not an odd number from 3 to {most}")
-    t = table(gpu, state.model, state.directions, rays, nodes)
-    theta, phi = np.degrees(angles(t.grid.wi))
+    found = tables(gpu, state.model, state.directions, rays, nodes)
+    wi, f, weight = (np.concatenate(parts) for parts in zip(*((t.grid.wi, t.f, t.weight) for t in found), strict=True))
+    theta, phi = np.degrees(angles(wi))
     columns = {"theta_i": theta, "phi_i": phi}
-    columns |= {f"f_{c}": t.f[..., i] for i, c in enumerate("rgb")}
-    columns |= {"pdf": gpu.pdf(state.model, t.wo, t.grid.wi), "weight": t.weight}
+    columns |= {f"f_{c}": f[..., i] for i, c in enumerate("rgb")}
+    columns |= {"pdf": gpu.pdf(state.model, found[0].wo, wi), "weight": weight}
     about = [
         f"f of {state.material.name!r} ({state.model.name()}) over directions to the light, by the shader in float32",
         f"direction to the viewer wo: theta_o = {state.directions.theta_o:.9g} deg, phi_o = {state.directions.phi_o:.9g} deg",
         "theta_i, phi_i: direction to the light, degrees; f_r, f_g, f_b: BSDF at linear R, G, B in 1/sr, cosine not included",
-        "pdf: density of sample_f in 1/sr; weight: solid angle in sr, so that the sum of f weight cos(theta_i) is the albedo",
+        "pdf: density of sample_f in 1/sr; weight: solid angle in sr, so that the sum of f weight |cos(theta_i)| is the albedo",
         f"{rays} rays of {nodes} directions, each from the mirror direction to the horizon; ray 0 and ray {rays // 2} are the"
         " plane of incidence",
     ]
+    if len(found) > 1:
+        about.append(
+            f"{rays} more rays, of directions below the surface, begin at the direction that a flat surface refracts to"
+        )
     write(path, state, about, columns)
 
 

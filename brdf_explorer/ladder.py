@@ -98,6 +98,12 @@ LADDERS = {
             ("none", "separable", "full", "directional", "correlated"),
         ),
         of_choice(
+            "masking",
+            "How do masking and shadowing combine on both sides of a surface?",
+            "f",
+            ("correlated", "separable", "beta"),
+        ),
+        of_choice(
             "fresnel",
             "How exact must the reflectance of a facet be?",
             "f",

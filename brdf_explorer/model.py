@@ -138,17 +138,31 @@ class Model(Declared):
     """A reflection model; an instance is a material.
 
     Directions are unit vectors in the local frame (normal +z), away from the surface, float64 arrays (..., 3); a
-    direction on the other side of the surface gives 0.
+    direction below the surface gives 0, unless the model transmits.
 
     f(wo, wi)        BSDF in 1/sr, cosine not included, (..., 3) linear RGB
     pdf(wo, wi)      density of sample_f per solid angle, (...)
     sample_f(wo, u)  u (..., 2) in the unit square -> wi (..., 3), weight = f |cos theta_i| / pdf (..., 3);
                      a weight of 0 marks a direction below the horizon, which carries no energy
+
+    A model that transmits takes wo and wi on either side, f being radiance at the viewer: with the index n of each
+    direction's side, 1 above and index() below, f(wo, wi) / n(wo)^2 = f(wi, wo) / n(wi)^2. A wi that carries no energy lies on
+    the horizon, wi.z = 0.
     """
+
+    transmits = False
+    """True: f is also non-zero where wo and wi are on opposite sides; directions below the horizon count."""
+
+    stochastic = False
+    """True: f returns an unbiased estimate, another one at each call."""
 
     def slopes(self):
         """(alpha_x, alpha_y): scale of the half vectors' slopes over which f varies; grids and quadrature follow it."""
         return (1.0, 1.0)
+
+    def index(self):
+        """Index of the medium below over that above, by which lobes below bend; None for a material that transmits nothing."""
+        return 1.0 if self.transmits else None
 
     def exceptions(self):
         """Laws of measure/laws.py that this material is known to break, by name, each with the limit that it keeps instead."""

@@ -11,10 +11,13 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from oracles.cases import CASES, case_label, pairwise
+from oracles.cases import CASES, case_label, pairwise, typed
 
 from brdf_explorer.glsl import SHADERS, Signature, assemble, functions
-from brdf_explorer.lib.common import PI, TWO_PI, length, normalize, quotient, vec
+from brdf_explorer.lib.common import PI, TWO_PI, dot, length, normalize, quotient, vec
+from brdf_explorer.lib.fresnel import eta2_cos2_t
+from brdf_explorer.lib.random import seeded
+from brdf_explorer.lib.refraction import cos_refracted, refracted, sum_refracted, upward
 from brdf_explorer.model import Choice, Param, declared
 from brdf_explorer.models import MODELS
 
@@ -22,6 +25,8 @@ COMMON, COMMON_SHARE = 1e-5, 0.999
 """The relative error that this share of the values must not exceed."""
 WORST = 1e-3
 """The relative error that no value may exceed."""
+WALKS, WALKS_SHARE = 1e-3, 0.995
+"""The same of walks by equal random numbers, over up to 64 facets in a row."""
 
 CHUNKS = sorted(p.stem for p in (SHADERS / "lib").glob("*.glsl"))
 
@@ -30,10 +35,13 @@ ONLY_NUMPY = {
     "srgb": {"srgb_decode"},  # colours of the interface become linear once, on their way in
     "lost": {"interpolated", "lost_by", "lost_mean_by"},  # numpy is handed the tables
     "lambert_sphere": {"polynomial"},  # a series of one variable
+    "random": {"seeded", "next_pass", "random_states"},  # which of a table's rows a shader's pixel knows by its place
 }
 ONLY_GLSL = {
     "ndf_beckmann": {"leading"},  # of float32's rounding
     "lambert_sphere": {"series"},
+    "random": {"drawn"},  # the method of Draws
+    "refraction": {"leading12"},
 }
 COLORS = {"f", "diffuse_f", "F", "tonemap", "srgb_encode"}
 """Functions whose components are compared each; other vectors are compared relative to their length."""
@@ -119,8 +127,48 @@ def normals(rng, n, size, drawn):
     return w
 
 
+def visible(rng, n, size, drawn):
+    """Directions above the horizon, and below it those from which some facet of slopes up to 5 alpha is seen."""
+    w = hemisphere(rng, n, size, drawn)
+    below = rng.random(n) < 0.5
+    phi, a = rng.uniform(0, TWO_PI, n), either(decades(1e-4, 5), uniform(0, 5))(rng, n, 1, drawn)
+    w[below] = normalize(np.concatenate([vec(np.cos(phi), np.sin(phi)) / drawn["alpha"], -a], axis=-1))[below]
+    return w
+
+
+def cosine_visible(rng, n, size, drawn):
+    a = either(decades(1e-4, 5), uniform(0, 5))(rng, n, 1, drawn)
+    return np.where(rng.random((n, 1)) < 0.5, COSINE(rng, n, 1, drawn), -a / np.sqrt(1 + a * a))
+
+
 def sphere(rng, n, size, drawn):
     return rng.permuted(hemisphere(rng, n, size, drawn), axis=-1) * rng.choice((-1, 1), (n, 1))
+
+
+def behind(rng, n, size, drawn):
+    """Below the surface; half of them where a facet with slopes over decades refracts wo to."""
+    below = hemisphere(rng, n, size, drawn) * [1, 1, -1]
+    phi = rng.uniform(0, TWO_PI, n)
+    slope = decades(1e-4, 10)(rng, n, 1, drawn) * vec(np.cos(phi), np.sin(phi))
+    wm, eta = normalize(np.concatenate([slope, np.ones((n, 1))], axis=-1)), drawn["eta"][:, 0]
+    w = refracted(drawn["wo"], wm, eta)
+    near = (rng.random(n) < 0.5) & (eta2_cos2_t(dot(drawn["wo"], wm), eta) > 0) & (w[:, 2] < -1e-4)
+    return np.where(near[:, None], w, below)
+
+
+def facing(rng, n, size, drawn):
+    """Normals that face w, and w itself where light from there would all be reflected."""
+    wm = hemisphere(rng, n, size, drawn)
+    wm = wm - 2 * np.minimum(dot(drawn["w"], wm)[:, None], 0) * drawn["w"]
+    passes = eta2_cos2_t(dot(drawn["w"], wm), drawn["eta"][:, 0]) > 0
+    return np.where(passes[:, None], wm, drawn["w"])
+
+
+def sum_length(rng, n, size, drawn):
+    """Of wo + eta wt, from grazing to straight incidence, on the denser side."""
+    eta = drawn["eta"]
+    least, most = np.abs(eta - 1), np.sqrt(np.abs(eta - 1) * (eta + 1))
+    return least * (most / least) ** rng.random((n, 1))
 
 
 def sine_of(cosine):
@@ -162,6 +210,13 @@ DRAWS = {
     "stream": integers(3),
     "v": integers(2**32),
     "bits": integers(2**32),
+    "depth": either(ZERO, decades(1e-6, 20), uniform(0, 3)),
+    "area": either(decades(1e-6, 1), uniform(0, 1)),
+    "hidden": either(decades(1e-6, 1), uniform(0, 1)),
+    "wt": behind,
+    "cos_t": COSINE,
+    "L": sum_length,
+    "z": one_plus(decades(1e-6, 1e6)),
     # of one function, whose argument's name says less than its domain
     "expm1_precise.x": either(uniform(0, 88), decades(1e-6, 80)),
     "exp_precise.x": either(uniform(-87, 88), signed(decades(1e-6, 80))),
@@ -171,22 +226,34 @@ DRAWS = {
     "atan2_precise.y": signed(decades(1e-6, 1e6)),
     "h_beckmann.a": either(decades(1e-6, 9.4), uniform(0, 9.4)),
     "sum_with_cap.v": hemisphere,
+    "projected_area.w": visible,
+    "sample_wm.wo": visible,
+    "visible_slope_beckmann.cos_o": cosine_visible,
+    "mean_exp.x": either(ZERO, decades(1e-6, 100), uniform(0, 3)),
+    "meeting.w": sphere,
+    "passage.w": sphere,
+    "flight.w": sphere,
+    "depth_below.depth": either(decades(1e-6, 20), uniform(1e-6, 3)),
     "cut": either(ZERO, decades(1e-8, 1), uniform(0, 1)),
+    "beta_one_plus.x": either(ZERO, decades(1e-6, 1e6)),
+    "beta_one_plus.y": either(ZERO, decades(1e-6, 1e6), uniform(0, 60)),
+    "refracted.wm": facing,
+    "upward.w": sphere,
     "viridis.x": uniform(-0.1, 1.1),
     "diverging.x": uniform(-1.1, 1.1),
     "environment_uv.w": sphere,
     "environment_direction.u": uniform(0, 1),
     "environment_direction.s": COSINE,
 }
-FIRST = ("alpha", "cos_o")
-"""Arguments that others are drawn by."""
+FIRST = ("alpha", "cos_o", "eta", "w", "wo")
+"""Arguments that others are drawn by, in this order."""
 
 
 def draw(function, n, rng):
     """Arguments of the function, n of each, as float32 or uint32 holds them, in its order."""
     drawn = {}
     kinds = dict(zip((n for _, n in function.arguments), Signature(function.signature).inputs, strict=True))
-    for name in sorted(kinds, key=lambda name: name not in FIRST):
+    for name in sorted(kinds, key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST)):
         how = DRAWS.get(f"{function.name}.{name}", DRAWS.get(name))
         assert how, f"{function.file}: {function.name}: say in DRAWS from where the argument {name} is drawn"
         drawn[name] = how(rng, n, kinds[name].components, drawn).astype(kinds[name].dtype)
@@ -208,15 +275,26 @@ FLOORS = {
     "smith_beckmann_rational.Lambda": lambda w, alpha: np.where(
         w[:, 2] > length(alpha * w[:, :2]), 4 * 1.2e-7 / 5.7, TINY
     ),
+    # A ray that goes up ends higher than it begins: depth less the flight, each known to a few roundings.
+    "walk.flight": lambda depth, w, area, u: 4 * 1.2e-7 * depth,
+    # The exponential leaves float32's range before what it is multiplied by brings the product back.
+    "walk.passage": lambda depth, w, area, wi, hidden: TINY * np.maximum(1, area * depth / np.abs(w[:, 2])) / wi[:, 2],
     # A difference, known to two roundings of each of its terms.
     "fresnel.eta2_cos2_t": lambda c, eta: (
         1.2e-7 * np.where(eta < 0.7, eta**2 + (1 - c) * (1 + c), np.abs(eta**2 - 1) + c**2)
     ),
+    # eta cos_t = t is the root of what is known to 2.4e-7.
+    "refraction.refracted": lambda w, wm, eta: refraction_floor(dot(w, wm), eta),
     # Blacks are differences of numbers near 0.1, and a display value below 1e-6 is black on any screen.
     "tonemap_aces.tonemap": lambda color: 1e-6,
     "tonemap_agx.tonemap": lambda color: 1e-6,
     "tonemap_neutral.tonemap": lambda color: 1e-6,
 }
+
+
+def refraction_floor(c, eta):
+    t = np.sqrt(np.maximum(eta2_cos2_t(c, eta), 1e-7))
+    return 1.2e-7 / t * np.abs(eta * eta - 1) / ((c + t) ** 2 * eta)
 
 
 def near_critical(c, eta, k=0.0, share=1e-6):
@@ -234,6 +312,7 @@ EXEMPT = {
     "fresnel.F_conductor": near_critical,
     "fresnel_dielectric.F": lambda c, eta, k: near_critical(c, eta),
     "fresnel_conductor.F": near_critical,
+    "refraction.refracted": lambda w, wm, eta: near_critical(dot(w, wm), eta, share=1e-5),
 }
 
 
@@ -247,14 +326,15 @@ def relative_error(value, expected, floor=TINY, components=False):
     return np.maximum(error - floor, 0) / np.maximum(size, floor)
 
 
-def check(error):
-    """The requirement on relative errors."""
+def check(error, walks=False):
+    """The requirement on relative errors. walks: of estimates by equal random numbers, whose walks part where rounding decides."""
     __tracebackhide__ = True
     assert np.all(np.isfinite(error))
-    share, largest = np.mean(error > COMMON), np.max(error)
-    found = f"{share:.3%} of the values err by more than {COMMON:g}; the largest error is {largest:.2g}"
+    common, least, worst = (WALKS, WALKS_SHARE, np.inf) if walks else (COMMON, COMMON_SHARE, WORST)
+    share, largest = np.mean(error > common), np.max(error)
+    found = f"{share:.3%} of the values err by more than {common:g}; the largest error is {largest:.2g}"
     print(found)
-    assert share <= 1 - COMMON_SHARE and largest <= WORST, found
+    assert share <= 1 - least and largest <= worst, found
 
 
 def chunk_error(gpu, function, twin, text=None, n=40_000):
@@ -335,8 +415,7 @@ def random_params(cls, rng):
         value = either(*draws)(rng, p.size, 1, {})[:, 0]
         if p.low == 0 and rng.random() < 0.125:
             value[:] = 0
-        value = tuple(within(v, p.low, p.high) for v in value)
-        values[name] = value if p.size > 1 else value[0]
+        values[name] = typed(p, [within(v, p.low, p.high) for v in value])
     return values
 
 
@@ -344,16 +423,22 @@ def materials(cls, choices, rng, count=12):
     """A model at the ends of its params' ranges and at random places."""
     params = declared(cls, Param)
     for end in ("low", "high"):
-        yield cls(**choices, **{n: within(getattr(p, end), p.low, p.high) for n, p in params.items()})
+        yield cls(**choices, **{n: typed(p, within(getattr(p, end), p.low, p.high)) for n, p in params.items()})
     for _ in range(count - 2):
         yield cls(**choices, **random_params(cls, rng))
 
 
-def pair(model, rng, n=3_000):
+def pair(model, rng):
     """wo and wi (n, 3), as float32 holds them: half of the wi are drawn by the model's sampler, so near the lobe."""
+    n = 150 if model.stochastic else 3_000
     wo, wi = (hemisphere(rng, n, 3, {}).astype(np.float32) for _ in range(2))
     sampled = model.sample_f(wo, rng.random((n, 2)))[0].astype(np.float32)
-    near = (rng.random(n) < 0.5) & (sampled[:, 2] >= 1e-4)
+    height = sampled[:, 2]
+    if model.transmits:
+        wo, wi = (w * rng.choice((-1, 1), (n, 1)).astype("f4") for w in (wo, wi))
+        sampled = model.sample_f(wo, rng.random((n, 2)))[0].astype(np.float32)
+        height = np.abs(sampled[:, 2])
+    near = (rng.random(n) < 0.5) & (height >= 1e-4)
     return wo.astype(float), np.where(near[:, None], sampled, wi).astype(float)
 
 
@@ -363,6 +448,8 @@ def exempt(model, wo, wi):
     The cosine has an error of 1.2e-7, so t^2 one of 2.4e-7 c^2. Beyond t = eta^2 / c the slope of F falls as 2 eta^2 / t^2: for
     eta = 0.1, the worst, F errs by more than WORST where t^2 < 1.8e-4 c^2. In angle that is 0.005 degrees.
     """
+    if model.index() is not None:
+        return np.repeat(exempt_of_refraction(wo, wi, np.array(model.index()))[:, None], 3, axis=1)
     if model.choices().get("fresnel") not in ("dielectric", "conductor"):
         return np.zeros((len(wo), 3), dtype=bool)
     k = np.array(model.k) if model.fresnel == "conductor" else 0.0
@@ -371,15 +458,52 @@ def exempt(model, wo, wi):
     return found
 
 
+def refracting(wo, wi, eta):
+    """Of pairs of directions: whether the surface is between them (n,), their sum_refracted, and its facet's cosines (n, 2)."""
+    crosses, above = wo[:, 2] * wi[:, 2] < 0, wo[:, 2:] > 0
+    sum = sum_refracted(np.where(above, wo, wi), np.where(above, wi, wo), eta)
+    sum = np.where(crosses[:, None], sum, [0.0, 0.0, 1.0])
+    return crosses, sum, cos_refracted(length(sum), eta) * vec(1.0, eta)
+
+
+def exempt_of_refraction(wo, wi, eta):
+    """near_critical of what is reflected, (n,); and where the facet is on edge to the surface or to a direction, its normal known
+    to 1e-7: there D ends, for GGX by a step, and what passes.
+    """
+    crosses, sum, c = refracting(wo, wi, eta)
+    outside = near_critical(0.5 * length(upward(wo) + upward(wi)), np.where(wo[:, 2] > 0, eta, 1 / eta), share=2e-4)
+    edge = (np.abs(c).min(axis=-1) < 1e-6 * c.sum(axis=-1)) | (np.abs(sum[:, 2]) < 1e-6 * length(sum))
+    found = np.where(crosses, edge, outside)
+    assert np.mean(found) < 5e-3
+    return found
+
+
+def doubt(model, wo, wi):
+    """The relative error (n,) that a model's f has by the smaller cosine at a facet that refracts, 0 of other models.
+
+    The cosine is a difference of numbers known to four roundings, 2.4e-7; f goes as its square.
+    """
+    if model.index() is None:
+        return np.zeros(len(wo))
+    crosses, _, c = refracting(wo, wi, np.array(model.index()))
+    return np.where(crosses, 2 * 2.4e-7 * c.sum(axis=-1) / np.maximum(np.abs(c).min(axis=-1), 1e-7), 0.0)
+
+
 @pytest.mark.parametrize(("cls", "choices"), CASES, ids=case_label)
 def test_f(gpu, cls, choices):
     rng, errors = np.random.default_rng(1), []
     for model in materials(cls, choices, rng):
         wo, wi = pair(model, rng)
         # D leaves float32's normal range before f = D F G / (4 cos cos) does
-        floor = TINY / np.minimum(4 * wo[:, 2:] * wi[:, 2:], 1)
-        errors.append(relative_error(gpu.f(model, wo, wi), model.f(wo, wi), floor, True)[~exempt(model, wo, wi)])
-    check(np.concatenate(errors))
+        floor = TINY / np.minimum(np.abs(4 * wo[:, 2:] * wi[:, 2:]), 1)
+        with seeded(1):
+            found = gpu.f(model, wo, wi)
+        with seeded(1):
+            expected = model.f(wo, wi)
+        with np.errstate(under="ignore"):
+            floor = np.maximum(floor, expected * doubt(model, wo, wi)[:, None])
+        errors.append(relative_error(found, expected, floor, True)[~exempt(model, wo, wi)])
+    check(np.concatenate(errors), model.stochastic)
 
 
 @pytest.mark.parametrize(("cls", "choices"), CASES, ids=case_label)
@@ -387,8 +511,12 @@ def test_pdf(gpu, cls, choices):
     rng, errors = np.random.default_rng(2), []
     for model in materials(cls, choices, rng):
         wo, wi = pair(model, rng)
-        floor = TINY / np.minimum(4 * wo[:, 2], 1)  # as f, with 4 cos (1 + Lambda) below
-        errors.append(relative_error(gpu.pdf(model, wo, wi), model.pdf(wo, wi), floor))
+        floor = TINY / np.minimum(np.abs(4 * wo[:, 2]), 1)  # as f, with 4 cos (1 + Lambda) below
+        expected = model.pdf(wo, wi)
+        with np.errstate(under="ignore"):
+            floor = np.maximum(floor, expected * doubt(model, wo, wi))
+        error = relative_error(gpu.pdf(model, wo, wi), expected, floor)
+        errors.append(error[~exempt(model, wo, wi)[:, 0]] if model.transmits else error)
     check(np.concatenate(errors))
 
 
@@ -399,17 +527,19 @@ def test_sample_f(gpu, cls, choices):
     for model in materials(cls, choices, rng):
         wo, _ = pair(model, rng)
         u = rng.integers(0, 2**24, (len(wo), 2)) * 2.0**-24
-        wi, weight = gpu.sample_f(model, wo, u)
+        with seeded(1):
+            wi, weight = gpu.sample_f(model, wo, u)
         directions.append(relative_error(wi, model.sample_f(wo, u)[0]))
         wi = wi.astype(float)
-        with np.errstate(under="ignore"):  # in the tails of a density
-            expected = quotient(model.f(wo, wi) * wi[:, 2:], model.pdf(wo, wi)[:, None])
+        with np.errstate(under="ignore"), seeded(1):  # in the tails of a density
+            expected = quotient(model.f(wo, wi) * np.abs(wi[:, 2:]), model.pdf(wo, wi)[:, None])
             # a weight may hold D, which leaves float32's range as in test_f
-            floor = quotient(TINY * wi[:, 2] / np.minimum(4 * wo[:, 2] * wi[:, 2], 1), model.pdf(wo, wi))
+            area = np.abs(wo[:, 2] * wi[:, 2])
+            floor = quotient(TINY * quotient(np.abs(wi[:, 2]), np.minimum(4 * area, 1)), model.pdf(wo, wi))
         floor = np.maximum(floor, TINY)[:, None]
         weights.append(relative_error(weight, expected, floor, True)[~exempt(model, wo, wi)])
     check(np.concatenate(directions))
-    check(np.concatenate(weights))
+    check(np.concatenate(weights), model.stochastic)
 
 
 # --- the harness itself ----------------------------------------------------------------------------------------------

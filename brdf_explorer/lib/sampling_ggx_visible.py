@@ -10,7 +10,7 @@ from .common import TWO_PI, mirror, normalize, quotient, split, vec
 from .ndf_ggx import visible_area
 
 
-def sample_wi(wo, u, alpha):
+def sample_wm(wo, u, alpha):
     x, y, z = split(wo)
     ax, ay = split(alpha)
     u0, u1 = split(u)
@@ -28,9 +28,11 @@ def sample_wi(wo, u, alpha):
     z = np.sqrt(up * (0.5 * sin_o * sin_o * w + s * s * down))
     height = np.where(y < 0, quotient(s * down * (w * vz - y), z * vz - y * sin_o), z * vz + y * sin_o)
     along = z * sin_o - y * vz
-    return mirror(
-        wo, normalize(vec(ax * (along * cos_phi - px * sin_phi), ay * (along * sin_phi + px * cos_phi), height))
-    )
+    return normalize(vec(ax * (along * cos_phi - px * sin_phi), ay * (along * sin_phi + px * cos_phi), height))
+
+
+def sample_wi(wo, u, alpha):
+    return mirror(wo, sample_wm(wo, u, alpha))
 
 
 def pdf_wi(wo, wi, density, alpha):

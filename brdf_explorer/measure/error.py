@@ -37,8 +37,8 @@ class Measured(NamedTuple):
 class Values:
     """f on the grids of all viewers, float64.
 
-    f, back     f(wo, wi) and f(wi, wo), (viewers, rays, nodes, 3)
-    cosine      of wi, (viewers, rays, nodes)
+    f, back     f(wo, wi) and f(wi, wo), (viewers, rays, nodes, 3), the latter times n(wo)^2 / n(wi)^2 of their sides
+    cosine      of wi, without its sign (viewers, rays, nodes)
     weight      solid angle, sr (viewers, rays, nodes)
     """
 
@@ -56,9 +56,9 @@ def spread(model, alpha, n=RAYS):
     """
     squares = []
     for wo in viewers():
-        g, weight = quadrature(wo, alpha, n)
+        g, weight = quadrature(wo, alpha, n, model.index())
         with np.errstate(under="ignore"):
-            f = model.f(wo, g.wi) * g.wi[..., 2:]
+            f = model.f(wo, g.wi) * np.abs(g.wi[..., 2:])
             pdf = model.pdf(wo, g.wi)[..., None]
             mean = np.einsum("ptc,pt->c", f, weight)
             second = np.einsum("ptc,pt->c", f * quotient(f, pdf), weight)
@@ -66,17 +66,18 @@ def spread(model, alpha, n=RAYS):
     return float(np.sqrt(max(np.mean(squares), 0.0)))
 
 
-def values(evaluator, alpha, n=RAYS, wo=None):
+def values(evaluator, alpha, n=RAYS, wo=None, index=None):
     """The Values of an evaluator, which has f(wo, wi), for slopes of scale alpha (2,); methods are compared at one alpha.
 
-    wo: other viewers (viewers, 3) than those of the laws.
+    wo: other viewers (viewers, 3) than those of the laws. index: as Model.index, for both sides of the surface.
     """
     wo = viewers() if wo is None else wo
-    grids, weight = zip(*(quadrature(w, alpha, n) for w in wo), strict=True)
+    grids, weight = zip(*(quadrature(w, alpha, n, index) for w in wo), strict=True)
     wi = np.stack([g.wi for g in grids])
     wo = wo[:, None, None]
     f, back = (np.asarray(evaluator.f(*pair), dtype=float) for pair in ((wo, wi), (wi, wo)))
-    return Values(f, back, wi[..., 2], np.stack(weight))
+    back = back * np.where(wi[..., 2:] < 0, (index or 1.0) ** -2.0, 1.0)
+    return Values(f, back, np.abs(wi[..., 2]), np.stack(weight))
 
 
 # --- errors of values ------------------------------------------------------------------------------------------------

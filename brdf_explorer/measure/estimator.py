@@ -102,7 +102,7 @@ def samplers(model):
 
 def contribution(model, wo, wi, light):
     """Luminance of f L cos (...)."""
-    value = luminance(model.f(wo, wi)) * np.maximum(wi[..., 2], 0.0)
+    value = luminance(model.f(wo, wi)) * np.abs(wi[..., 2])
     return value * (light.radiance(wi) if light else 1.0)
 
 
@@ -126,9 +126,9 @@ def moments(models, wo, light=None, most=256):
 def _by_quadrature(models, wo, most):
     before, n = None, 32
     while n <= most:
-        g, weight = quadrature(wo, models[0].slopes(), n)
+        g, weight = quadrature(wo, models[0].slopes(), n, models[0].index())
         rows, total = max(BATCH // n, 1), 0.0
-        for i in range(0, n, rows):
+        for i in range(0, len(weight), rows):
             total = total + np.einsum("ptc,pt->c", _powers(models, wo, g.wi[i : i + rows], None), weight[i : i + rows])
             yield None
         if before is not None:
@@ -144,7 +144,7 @@ def _among_light(models, wo, light, most):
     while done < most:
         index = np.arange(done, done + 64, dtype=np.uint32)[None]
         for wi in (lobe.sample_f(wo, random2(pixel, index, 1))[0], light.sample(random2(pixel, index, 2))):
-            up = wi[..., 2] > HORIZON
+            up = (np.abs(wi[..., 2]) if lobe.transmits else wi[..., 2]) > HORIZON
             wi = np.where(up[..., None], wi, [0.0, 0.0, 1.0])
             density = lobe.pdf(wo, wi) + light.pdf(wi)
             with np.errstate(under="ignore"):

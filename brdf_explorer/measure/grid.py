@@ -4,6 +4,8 @@ Directions are wi = wo mirrored about microfacet normals whose slopes are s = rh
 grid of slopes, stretched as the microsurface is. Each ray psi begins at the mirror direction (rho = 0) and ends on the horizon
 (rho = rho_max(psi)), so the grid covers the hemisphere once, is as fine as the lobe near its peak whatever alpha is, and has
 the horizon as its edge. Along a ray rho = sinh(t asinh(rho_max)), t in [0, 1]: uniform inside the lobe, logarithmic outside.
+
+Of a surface that transmits there is a second such grid on the other side, about the direction that the flat surface refracts to.
 """
 
 from dataclasses import dataclass
@@ -11,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..lib.common import split, vec
+from ..lib.refraction import refracted
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,57 @@ def grid(wo, alpha, t, psi):
     d_rho = scale * np.cosh(t * scale)
     density = 4 * along * ax * ay * rho * d_rho / n2**2
     return Grid(wi, density)
+
+
+LEAST_COSINE, LEAST_ALPHA = 0.05, 1e-9
+"""Of the viewer that stands for a refracted lobe: at total internal reflection there is none, and without refraction no width."""
+
+
+@dataclass(frozen=True)
+class Side:
+    """A side of the surface as a grid sees it.
+
+    wo, alpha   a viewer (3,) above the surface and a scale of slopes (2,), for `grid`, `place` and `spread`
+    up          1 if the side is that above the horizon, -1 if it is below: what their wi.z is multiplied by
+    dense       n^2 of the side over that of the viewer's: a share of energy is this times one of radiance
+    """
+
+    wo: np.ndarray
+    alpha: tuple
+    up: float = 1.0
+    dense: float = 1.0
+
+    def turned(self, wi):
+        """Directions wi (..., 3) of a grid above the horizon, on this side; or back."""
+        return wi * [1.0, 1.0, self.up]
+
+
+def sides(wo, alpha, index=None):
+    """The Sides on which a viewer wo (3,) meets light: its own, and the other one if index, as Model.index, is not None.
+
+    The flat surface refracts wo to -v. A tilt of a facet turns that by |1 - cos_o / (eta cos_t)| times the tilt, and the mirrored
+    direction by twice the tilt: so the grid of the other side is that of a viewer v above a surface of such slopes.
+    """
+    wo = np.asarray(wo, dtype=float)
+    if index is None:
+        return [Side(wo, tuple(alpha))] if wo[2] > 0 else []
+    if wo[2] == 0:
+        return []
+    up = float(np.sign(wo[2]))
+    eta = index**up
+    near = Side(wo * [1.0, 1.0, up], tuple(alpha), up)
+    cos_t = max(1 - (1 - near.wo[2] ** 2) / eta**2, LEAST_COSINE**2) ** 0.5
+    across = near.wo[:2] / max(np.hypot(*near.wo[:2]), 1e-300) * (1 - cos_t**2) ** 0.5
+    factor = 0.5 * abs(1 - near.wo[2] / (eta * cos_t))
+    far = tuple(float(np.clip(factor * a, LEAST_ALPHA, 1.0)) for a in alpha)
+    return [near, Side(vec(*across, cos_t), far, -up, eta**2)]
+
+
+def flat_refraction(wo, index):
+    """Where the flat surface refracts wo (3,) above it to; None at total internal reflection, or without an index."""
+    if index is None or wo[2] ** 2 <= 1 - index**2:
+        return None
+    return refracted(wo, np.array([0.0, 0.0, 1.0]), np.array(index))
 
 
 def place(wo, alpha, wi):

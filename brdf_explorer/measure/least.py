@@ -569,6 +569,10 @@ def least(gpu, state, tolerance=0.01, metric="picture", ladders=LADDERS, prices=
     prices: Prices instead of measured ones. Raises Invalid where nothing can be reduced or compared, or nothing is within
     the tolerance.
     """
+    if state.model.index() is not None:
+        raise Invalid(
+            f"{state.material.name}: light inside a ball is not compared here; `chart` compares f of its methods"
+        )
     asked, untried = questions(state, metric, ladders)
     if all(len(q.methods) < 2 for q in asked):
         raise Invalid(f"{state.material.name}: nothing to reduce: each question that it raises has one method only")

@@ -7,16 +7,18 @@ import numpy as np
 from ..lib.common import HORIZON, quotient
 from ..lib.random import random2
 from .albedo import gauss
-from .grid import grid, place, spread
+from .grid import grid, place, sides, spread
 
 PSI_BINS, T_BINS, NODES = 12, 12, 12
 """Bins, and nodes a bin each way: more bins would see finer faults, but large ones less, as the statistic's noise grows."""
+FAR_NODES = 32
+"""On the other side of a surface that transmits: there D ends inside of bins, where facets are on edge, for GGX by a step."""
 POOL = 5.0
 """Bins that expect fewer samples are counted together, as the statistic's distribution needs."""
 
 
 class ChiSquare(NamedTuple):
-    """Pearson's statistic, its degrees of freedom, the chance of a larger one, and what is above the horizon.
+    """Pearson's statistic, its degrees of freedom, the chance of a larger one, and what is above the horizon, or off it.
 
     mass is the integral of pdf there, share the part of the samples.
     """
@@ -40,49 +42,55 @@ class Mean(NamedTuple):
 
 
 def bins(model, wo):
-    """Probability by model.pdf of each bin (PSI_BINS, T_BINS) of wi, one viewer wo (3,): Gauss-Legendre inside each bin.
+    """Probability by model.pdf of each bin (sides, PSI_BINS, T_BINS) of wi, one viewer wo (3,): Gauss-Legendre inside each bin.
 
     A bin is an interval of psi by one of t on the grid that follows the lobe, so the horizon is the last bins' edge and no
     lobe is too sharp for them. They are finer near the peak (t = s^2) and where rays crowd.
     """
-    x, dx = gauss(NODES)
-    fraction = (np.arange(PSI_BINS)[:, None] + x).ravel() / PSI_BINS
     edges = (np.arange(T_BINS + 1) / T_BINS) ** 2
     width = np.diff(edges)
-    t = (edges[:-1, None] + x * width[:, None]).ravel()
-    psi, turn = spread(wo, model.slopes(), fraction)
-    g = grid(wo, model.slopes(), t, psi)
-    with np.errstate(under="ignore"):  # in the tails of a density
-        mass = model.pdf(wo, g.wi) * g.density
-        mass *= (turn * np.tile(dx, PSI_BINS) / PSI_BINS)[:, None] * (width[:, None] * dx).ravel()
-        return mass.reshape(PSI_BINS, NODES, T_BINS, NODES).sum(axis=(1, 3))
+    found = []
+    for side in sides(wo, model.slopes(), model.index()):
+        nodes = NODES if side.dense == 1 else FAR_NODES
+        x, dx = gauss(nodes)
+        t = (edges[:-1, None] + x * width[:, None]).ravel()
+        psi, turn = spread(side.wo, side.alpha, (np.arange(PSI_BINS)[:, None] + x).ravel() / PSI_BINS)
+        g = grid(side.wo, side.alpha, t, psi)
+        with np.errstate(under="ignore"):  # in the tails of a density
+            mass = model.pdf(wo, side.turned(g.wi)) * g.density
+            mass *= (turn * np.tile(dx, PSI_BINS) / PSI_BINS)[:, None] * (width[:, None] * dx).ravel()
+            found.append(mass.reshape(PSI_BINS, nodes, T_BINS, nodes).sum(axis=(1, 3)))
+    return np.stack(found)
 
 
 def chi_square(model, wo, n=50_000, seed=1, sample=None):
     """Test n directions drawn for one viewer wo (3,) against pdf: a ChiSquare. 50 000 show an alpha that is 5 % off.
 
-    sample(wo, u) -> wi, weight is model.sample_f if not given; gpu.sample_f of the model is another. Directions on or below
-    the horizon are one bin more.
+    sample(wo, u) -> wi, weight is model.sample_f if not given; gpu.sample_f of the model is another. Directions on the
+    horizon, and below it if the model does not transmit, are one bin more.
     """
     from scipy.stats import chi2
 
     wo = np.asarray(wo, dtype=float)
     u = np.random.default_rng(seed).integers(0, 2**24, (n, 2)) * 2.0**-24
     wi = np.asarray((sample or model.sample_f)(wo, u)[0], dtype=float)
-    up = wi[:, 2] > HORIZON
-    t, psi = place(wo, model.slopes(), wi[up])
-    edges, _ = spread(wo, model.slopes(), np.arange(1, PSI_BINS) / PSI_BINS)
-    i = np.searchsorted(edges, psi)
-    j = np.minimum((np.sqrt(t) * T_BINS).astype(int), T_BINS - 1)
-    counts = np.bincount(i * T_BINS + j, minlength=PSI_BINS * T_BINS).astype(float)
+    counts = []
+    for side in sides(wo, model.slopes(), model.index()):
+        seen = side.turned(wi[side.up * wi[:, 2] > HORIZON])
+        t, psi = place(side.wo, side.alpha, seen)
+        edges, _ = spread(side.wo, side.alpha, np.arange(1, PSI_BINS) / PSI_BINS)
+        i = np.searchsorted(edges, psi)
+        j = np.minimum((np.sqrt(t) * T_BINS).astype(int), T_BINS - 1)
+        counts.append(np.bincount(i * T_BINS + j, minlength=PSI_BINS * T_BINS).astype(float))
+    counts = np.concatenate(counts)
     mass = bins(model, wo).ravel()
     expected = n * np.append(mass, max(1 - mass.sum(), 0.0))
-    observed = np.append(counts, n - up.sum())
+    observed = np.append(counts, n - counts.sum())
     observed, expected = pooled(observed, expected)
     statistic = float(np.sum((observed - expected) ** 2 / expected))
     freedom = len(expected) - 1
     p = float(chi2.sf(statistic, freedom)) if freedom else 1.0
-    return ChiSquare(statistic, freedom, p, float(mass.sum()), float(np.mean(up)), n)
+    return ChiSquare(statistic, freedom, p, float(mass.sum()), float(counts.sum() / n), n)
 
 
 def pooled(observed, expected):
@@ -118,7 +126,10 @@ def mean_weight(model, wo, points=1024, rotations=16, sample=None):
 
 def largest_weight(model, wo, n=64):
     """The largest f cos / pdf (3,) for one viewer wo (3,), of n x n directions that follow the lobe."""
-    psi, _ = spread(wo, model.slopes(), (np.arange(n) + 0.5) / n)
-    wi = grid(wo, model.slopes(), np.arange(n) / n, psi).wi
-    with np.errstate(under="ignore"):  # in the tails of a density
-        return np.max(quotient(model.f(wo, wi) * wi[..., 2:], model.pdf(wo, wi)[..., None]), axis=(0, 1))
+    found = []
+    for side in sides(wo, model.slopes(), model.index()):
+        psi, _ = spread(side.wo, side.alpha, (np.arange(n) + 0.5) / n)
+        wi = side.turned(grid(side.wo, side.alpha, np.arange(n) / n, psi).wi)
+        with np.errstate(under="ignore"):  # in the tails of a density
+            found.append(quotient(model.f(wo, wi) * np.abs(wi[..., 2:]), model.pdf(wo, wi)[..., None]))
+    return np.max(found, axis=(0, 1, 2))

@@ -40,8 +40,8 @@ NODES = 24
 STEPS = (1, -1, 10, -10)
 """Changes of an argument that its condition is taken from, in UNITs. Ten of them see a kink next to it, as at total reflection,
 where a formula that rounds more than once may end on the other side."""
-PARTS = {"pdf_wi", "weight_wi"}
-"""Functions that are no rows: they are all of pdf and sample_f but for what has a row."""
+PARTS = {"pdf_wi", "weight_wi", "flight"}
+"""Functions that are no rows: all of pdf and sample_f but for what has a row; and a depth, which is below 0 where a ray leaves."""
 COLORS = ("f", "F", "sample_f", "diffuse_f")
 """Functions whose components are compared each; other vectors are directions, compared relative to their length."""
 
@@ -122,10 +122,10 @@ def reflected(slope, share=1.0):
 
 
 def near(signs, off):
-    """Directions next to wo with the signs of its components changed, turned by `off`; below wo's azimuth at any height."""
+    """Directions next to wo, or a ray w, with the signs of its components changed, turned by `off`; opposite ones at any height."""
 
     def draw(u, size, drawn):
-        w = drawn["wo"] * signs
+        w = drawn.get("wo", drawn.get("w")) * signs
         turn = off(np.abs(2 * u - 1), 1, drawn)[:, 0] * np.where(u[:, 0] < 0.5, -1, 1)
         if np.all(np.asarray(signs) == (-1, -1, 1)):
             z = np.minimum(w[:, 2] * 10.0 ** (4 * u[:, 1] - 2), 0.5)
@@ -192,6 +192,9 @@ ORDINARY = {
     "Lambda_o": decades(1e-3, 10.0),
     "Lambda_i": decades(1e-3, 10.0),
     "density": decades(1e-3, 1e3),
+    "depth": decades(1e-2, 10.0),
+    "area": linear(0.05, 1.0),
+    "hidden": decades(1e-3, 1.0),
 }
 """Where nothing special happens. A parameter of a model that is not here is drawn from its range."""
 
@@ -457,7 +460,7 @@ def subjects(model):
     cls, path = type(model), f"models/{model.name()}.glsl"
     text = read(path, [])
     for include in re.findall(r'#include "(models/[^"]+)"', text):
-        text += read(filled(include, model.choices(), path), [path])
+        text += read(filled(include, model.choices(), path), [])
     called = set(re.findall(r"\b(\w+)\(", text))
     found = []
     for include in re.findall(r'#include "(lib/[^"]+)"', text):
@@ -467,7 +470,9 @@ def subjects(model):
             there = hasattr(slot(file[4:-5]), function.name)
             if there and function.name in called - PARTS - {s.name for s in found}:
                 found.append(_chunk(cls, file, function, chosen))
-    return found + [_of_model(cls, model, function) for function in functions(path)]
+    # of an estimate one value says nothing; its parts have rows
+    own = ("pdf",) if model.stochastic else ("f", "pdf", "sample_f")
+    return found + [_of_model(cls, model, function) for function in functions(path) if function.name in own]
 
 
 def _all_functions(file):
@@ -492,12 +497,15 @@ def _chunk(cls, file, function, choices):
 def _of_model(cls, model, function):
     """A function of a model, its parameters made arguments."""
     params = declared(cls, Param)
-    kinds = {name: kind for kind, name in function.arguments} | {name: p.glsl for name, p in params.items()}
+    whole = {name for name, p in params.items() if p.glsl == "int"}  # a table holds no whole numbers
+    kinds = {name: kind for kind, name in function.arguments}
+    kinds |= {name: "float" if name in whole else p.glsl for name, p in params.items()}
     out = re.search(r", (out \w+ \w+)\)", function.signature)
     takes = ", ".join(f"{kind} {name}" for name, kind in kinds.items()) + (f", {out[1]}" if out else "")
     gives = ", ".join([name for _, name in function.arguments] + ([out[1].split()[-1]] if out else []))
     signature = f"{function.signature.split()[0]} at({takes})"
-    body = f"{signature} {{\n  material = Material({', '.join(params)});\n  return {function.name}({gives});\n}}\n"
+    made = ", ".join(f"int({name})" if name in whole else name for name in params)
+    body = f"{signature} {{\n  material = Material({made});\n  return {function.name}({gives});\n}}\n"
     variable = params_glsl("material", cls).replace("uniform Material", "Material")
 
     def source(call, form):

@@ -242,14 +242,14 @@ def kept_errors(gpu, ladder, state, metric):
 def value_errors(gpu, ladder, state, metric):
     """By quadrature in float64; the own error is the change from half the rays."""
     reference = ladder.reference(state)
-    alpha = ladder.at(state, reference).model.slopes()
+    alpha, index = ladder.at(state, reference).model.slopes(), ladder.at(state, reference).model.index()
     tables, found = {}, {}
     for method in (reference, *ladder.methods):
         if method.name not in tables:
             parts = {n: [] for n in (RAYS // 2, RAYS)}
             for n, of_rays in parts.items():
                 for wo in viewers():
-                    of_rays.append(values(ladder.at(state, method).model, alpha, n, wo[None]))
+                    of_rays.append(values(ladder.at(state, method).model, alpha, n, wo[None], index))
                     yield found
             tables[method.name] = [joined(of_rays) for of_rays in parts.values()]
         coarse, fine = map(metric.function, tables[method.name], tables[reference.name])

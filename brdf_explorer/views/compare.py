@@ -16,7 +16,7 @@ from .lines import draw_lines
 from .lobe import Camera, stage
 from .picture import PALETTES, rgb
 from .polar import LETTER, NODES
-from .table import table
+from .table import tables
 
 PARTS = ("sphere", "difference", "lobes", "curves")
 THROUGH = 0.55  # opacity of the lobe of B, through which A is seen
@@ -69,7 +69,7 @@ class Compare(Drawn):
         side = side_of(boxes)
         sides = gpu.beside("compare A"), gpu.beside("compare B")
         lobes = both_lobes(gpu, sides, states, boxes["lobes"], scale) if "lobes" in boxes else None
-        slices = [table(gpu, s.model, s.directions, rays=2, nodes=NODES).plane() for s in states]
+        slices = [[t.plane() for t in tables(gpu, s.model, s.directions, rays=2, nodes=NODES)] for s in states]
         numbers = difference_of_values(*(s.model for s in states))
         runs = [s.views["sphere"].pictures(g, s, (side, side), scale) for g, s in zip(sides, states, strict=True)]
         one, other, done = next(runs[0]), next(runs[1]), False
@@ -123,19 +123,22 @@ class Compare(Drawn):
             draw.text(label.text, at, label.color, label.anchor, label.size)
 
     def curves(self, draw, box, states, slices):
-        """f along the plane of incidence."""
+        """f along the plane of incidence; below the surface too, if one of them transmits."""
         s = draw.scale
         left, bottom, right, top = box
-        f = [luminance(f) for _, _, f in slices]
-        high = 1.3 * max(float(v.max()) for v in f) or 1.0
+        lines = [
+            (state, theta, luminance(f)) for state, parts in zip(states, slices, strict=True) for theta, _, f in parts
+        ]
+        high = 1.3 * max(float(v.max()) for _, _, v in lines) or 1.0
         low = high / 10**self.decades if self.axis == "log" else 0.0
         frame = (left + 44 * s, bottom + 36 * s, max(right - 8 * s, left + 52 * s), max(top - 4 * s, bottom + 40 * s))
-        axes = Axes(draw, frame, Axis(-90.0, 90.0, "θi in the plane of incidence"), Axis(low, high, "", self.axis))
-        angles = np.arange(-90, 91, 30)
-        axes.frame(angles, [f"{abs(a)}°" for a in angles])
+        lowest = -270.0 if max(map(len, slices)) > 1 else -90.0
+        axes = Axes(draw, frame, Axis(lowest, 90.0, "θi in the plane of incidence"), Axis(low, high, "", self.axis))
+        angles = np.arange(lowest, 91, 30 if lowest == -90 else 45)
+        axes.frame(angles, [f"{min(abs(a), 360 - abs(a)):g}°" for a in angles])
         draw.text("f  [1/sr]", (left, top + 12 * s), "ink", (0.0, 0.5), 12.5)
         draw.over()
-        for state, (theta, _, _), v in zip(states, slices, f, strict=True):
+        for state, theta, v in lines:
             axes.line(np.degrees(theta), v, color_of(state, draw.colors), 2.0)
 
     def difference(self, draw, gpu, box, targets, pixels):
@@ -174,17 +177,25 @@ def both_lobes(gpu, sides, states, box, scale):
     left, bottom, right, top = box
     size = (max(int(right - left), 8), max(int(top - bottom), 8))
     lobe = states[0].views["lobe"]
-    tables = [table(gpu, state.model, state.directions) for state in states]
-    peak = max(lobe.peak(t) for t in tables) or 1.0
-    camera = Camera(lobe, size, scale, bar=0)
-    below, above, labels = stage(camera, tables[0].wo, colors)
+    found = [tables(gpu, state.model, state.directions) for state in states]
+    peak = max(lobe.peak(t) for parts in found for t in parts) or 1.0
+    camera = Camera(lobe, size, scale, bar=0, both=max(map(len, found)) > 1)
+    below, above, labels = stage(camera, found[0][0].wo, colors)
     target = gpu.target("compare lobes", size, 4, "f1")
     target.clear(*rgb(colors["paper"]), 1.0)
-    draw_lines(gpu, target, below)
     over = gpu.program(assemble("views/over.frag"))
-    for state, t, side, share in zip(states, tables, sides, (1.0, THROUGH), strict=True):
-        *_, (layer, _) = lobe.surfaces(side, t, camera, 1 / peak, "plain", {"ink": rgb(color_of(state, colors))})
-        gpu.draw(over, target, {"share": share}, {"picture": layer.color_attachments[0]}, blend="premultiplied")
+
+    def draw(which):
+        for state, parts, side, share in zip(states, found, sides, (1.0, THROUGH), strict=True):
+            for t in parts[which]:
+                *_, (layer, _) = lobe.surfaces(
+                    side, t, camera, 1 / peak, "plain", {"ink": rgb(color_of(state, colors))}
+                )
+                gpu.draw(over, target, {"share": share}, {"picture": layer.color_attachments[0]}, blend="premultiplied")
+
+    draw(slice(1, 2))  # below the surface, and seen through it
+    draw_lines(gpu, target, below)
+    draw(slice(0, 1))
     draw_lines(gpu, target, above)
     return target, labels
 
@@ -215,7 +226,8 @@ def layout(size, scale, count, foot):
 def difference_of_values(a, b):
     """Lines that say how far f of the model b is from that of a."""
     alpha = np.minimum(a.slopes(), b.slopes())
-    found, reference = error.values(b, alpha), error.values(a, alpha)
+    index = a.index() or b.index()
+    found, reference = error.values(b, alpha, index=index), error.values(a, alpha, index=index)
     return [
         f"{m.title}: {number(m.function(found, reference), 2)}"
         for m in (error.METRICS[n] for n in ("rmse", "maximum", "energy"))

@@ -20,7 +20,7 @@ class Diagram(View):
 
     def factor(self, wi):
         """What f is multiplied by, for directions wi (..., 3)."""
-        return wi[..., 2] if self.quantity == "f_cos" else 1.0
+        return np.abs(wi[..., 2]) if self.quantity == "f_cos" else 1.0
 
 
 def radius(share, scale, decades):

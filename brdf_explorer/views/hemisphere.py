@@ -1,4 +1,8 @@
-"""D, D_visible, pdf and f as maps over the hemisphere of directions, with directions drawn by the model's sampler."""
+"""D, D_visible, pdf and f as maps over the hemisphere of directions, with directions drawn by the model's sampler.
+
+Of a material that transmits f and pdf are maps over both hemispheres, the lower one seen from above through the surface. `up` is
+1 for the hemisphere above and -1 for that below, and directions on a disc are as if above.
+"""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -10,7 +14,7 @@ from ..lib import slot
 from ..lib.common import normalize, vec
 from ..lib.srgb import luminance
 from ..measure.albedo import integral, quadrature
-from ..measure.grid import angles, direction
+from ..measure.grid import angles, direction, flat_refraction, sides
 from ..measure.microsurface import D_visible, facets, projected_area
 from ..model import choice, param
 from .axes import Axis, colorbar
@@ -70,15 +74,21 @@ class Hemisphere(Drawn):
             return D_visible(model, wo, w)
         if self.quantity == "pdf":
             return model.pdf(wo, w)
-        return luminance(model.f(wo, w)) * (w[..., 2] if self.quantity == "f_cos" else 1.0)
+        return luminance(model.f(wo, w)) * (np.abs(w[..., 2]) if self.quantity == "f_cos" else 1.0)
 
-    def peak(self, model, wo):
+    def hemispheres(self, model):
+        """`up` of the hemispheres that are shown."""
+        return (1.0,) if self.over == "wm" or model.index() is None else (1.0, -1.0)
+
+    def peak(self, model, wo, up=1.0):
         """The Peak: the best of a grid that follows the lobe, then of steps from there that shrink."""
+        turn = np.array([1.0, 1.0, up])
         if self.over == "wm":
             w = facets(np.array([0.0, 0.0, 1.0]), model.alpha, RAYS)[0]
         else:
-            w = quadrature(wo, model.slopes(), RAYS)[0].wi
-        values = self.values(model, wo, w)
+            (side,) = (s for s in sides(wo, model.slopes(), model.index()) if s.up == up)
+            w = quadrature(side.wo, side.alpha, RAYS)[0].wi
+        values = self.values(model, wo, w * turn)
         seen = values >= FAINT * values.max()
         best = disc(w[np.unravel_index(values.argmax(), values.shape)])
         reach = float(np.linalg.norm(disc(w[seen]) - best, axis=-1).max())
@@ -86,8 +96,8 @@ class Hemisphere(Drawn):
         for step in 0.1 * max(reach, 1e-6) * 0.6 ** np.arange(30):
             tries = best + step * steps
             tries /= np.maximum(np.linalg.norm(tries, axis=-1, keepdims=True) / EDGE, 1.0)
-            best = tries[self.values(model, wo, of_disc(tries)).argmax()]
-        return Peak(float(self.values(model, wo, of_disc(best))), of_disc(best), reach)
+            best = tries[self.values(model, wo, of_disc(tries) * turn).argmax()]
+        return Peak(float(self.values(model, wo, of_disc(best) * turn)), of_disc(best), reach)
 
     def mass(self, model, wo):
         """The integral that QUANTITIES names, by quadrature."""
@@ -97,14 +107,16 @@ class Hemisphere(Drawn):
             return projected_area(model, wo) / float(slot("ndf", model.ndf).visible_area(wo, np.array(model.alpha)))
 
         def function(wo, wi):
-            return (model.pdf(wo, wi) if self.quantity == "pdf" else luminance(model.f(wo, wi)) * wi[..., 2])[..., None]
+            return (model.pdf(wo, wi) if self.quantity == "pdf" else luminance(model.f(wo, wi)) * np.abs(wi[..., 2]))[
+                ..., None
+            ]
 
-        return float(integral(function, wo, model.slopes(), tolerance=1e-6, most=256).value[0])
+        return float(integral(function, wo, model.slopes(), tolerance=1e-6, most=256, index=model.index()).value[0])
 
-    def drawn(self, model, wo):
-        """The directions (n, 3) that the sampler draws, or their half vectors."""
+    def drawn(self, model, wo, up=1.0):
+        """The directions (n, 3) that the sampler draws in that hemisphere, or all half vectors."""
         wi = model.sample_f(wo, np.random.default_rng(1).random((self.samples, 2)))[0]
-        return wi[wi[:, 2] > 0] if self.over == "wi" else normalize(wo + wi)
+        return wi[up * wi[:, 2] > 0] * [1.0, 1.0, up] if self.over == "wi" else normalize(wo + wi)
 
     def drawings(self, gpu, state, size, scale=1.0):
         model = state.model
@@ -116,27 +128,42 @@ class Hemisphere(Drawn):
             yield draw, "", True
             return
         wo = direction(np.radians(state.directions.theta_o), np.radians(state.directions.phi_o))
-        peak = self.peak(model, wo)
-        draw = self.drawing(gpu, state, wo, peak, size, scale)
-        theta, phi = np.degrees(angles(peak.w)).round(2) + 0.0  # which makes -0 a 0
+        peaks = {up: self.peak(model, wo, up) for up in self.hemispheres(model)}
+        draw = self.drawing(gpu, state, wo, peaks, size, scale)
+        up, peak = max(peaks.items(), key=lambda item: item[1].value)
+        theta, phi = np.degrees(angles(peak.w * [1.0, 1.0, up])).round(2) + 0.0  # which makes -0 a 0
         note = f"peak {number(peak.value, 4)} / sr at θ {theta:g}°" + f", φ {phi % 360:g}°" * bool(theta)
         yield draw, note, False
         yield draw, f"{note}; {QUANTITIES[self.quantity][1]} = {self.mass(model, wo):.6f}", True
 
-    def drawing(self, gpu, state, wo, peak, size, scale):
+    def drawing(self, gpu, state, wo, peaks, size, scale):
         draw = Drawing(size, scale, state.look.theme)
+        beside = len(peaks) if size[0] >= size[1] else 1  # and else one below the other
+        part = np.array([size[0] / beside, size[1] * beside / len(peaks)])
+        most = max(peak.value for peak in peaks.values())
+        for i, (up, peak) in enumerate(peaks.items()):
+            corner = np.array([i * part[0], 0.0]) if beside > 1 else np.array([0.0, (len(peaks) - 1 - i) * part[1]])
+            where = ("above the surface", "below it, seen through it")[i] if len(peaks) > 1 else OVER[self.over]
+            self.disc_of(draw, gpu, state, wo, up, peak, most, corner, part, where)
+        draw.text(QUANTITIES[self.quantity][0], (12 * scale, size[1] - 15 * scale), "ink", (0.0, 0.5), 12.5)
+        return draw
+
+    def disc_of(self, draw, gpu, state, wo, up, peak, most, corner, size, where):
+        """One hemisphere in a part of the drawing, from `corner` on; `most` has the last colour."""
+        scale = draw.scale
         inset = peak.reach < NARROW
         center, radius, bar, lens = layout(np.divide(size, scale), inset)
-        center, radius = center * scale, radius * scale
-        title, over = QUANTITIES[self.quantity][0], OVER[self.over]
-        draw.text(title, (12 * scale, size[1] - 15 * scale), "ink", (0.0, 0.5), 12.5)
+        center, radius = corner + center * scale, radius * scale
+        x, y = corner / scale
         if bar:
-            draw.text(over, (12 * scale, size[1] - 33 * scale), "muted", (0.0, 0.5), 11.5)
+            bar = bar[0] + x, bar[1] + y, bar[2] + x, bar[3] + y
+            draw.text(where, corner + [12 * scale, size[1] - 33 * scale], "muted", (0.0, 0.5), 11.5)
         half = int(radius) + 2
-        corner = np.round(center).astype(int) - half
-        center = corner + half
-        draw.raster(corner, self.map(gpu, state, wo, peak, "hemisphere", (2 * half, 2 * half), (0.0, 0.0), 1 / radius))
-        samples = disc(self.drawn(state.model, wo))
+        at = np.round(center).astype(int) - half
+        center = at + half
+        shown = (gpu, state, wo, up, peak, most)
+        draw.raster(at, self.map(*shown, "hemisphere", (2 * half, 2 * half), (0.0, 0.0), 1 / radius))
+        samples = disc(self.drawn(state.model, wo, up))
 
         def place(p):
             return center + radius * np.asarray(p)
@@ -152,9 +179,9 @@ class Hemisphere(Drawn):
         dots(draw, place(samples))
         reach = max(1.3 * peak.reach, 1e-5)
         if lens and inset:
-            left, bottom, side = np.round(np.array(lens) * scale).astype(int)
+            left, bottom, side = np.round((np.array(lens) + [x, y, 0]) * scale).astype(int)
             middle, pixel = disc(peak.w), 2 * reach / side
-            draw.raster((left, bottom), self.map(gpu, state, wo, peak, "inset", (side, side), middle, pixel))
+            draw.raster((left, bottom), self.map(*shown, "inset", (side, side), middle, pixel))
             draw.over()
             near = samples[np.all(np.abs(samples - middle) < reach * (1 - 4 * scale / side), axis=-1)]
             dots(draw, (left + side / 2, bottom + side / 2) + (near - middle) / pixel)
@@ -164,36 +191,44 @@ class Hemisphere(Drawn):
             words = f"the peak, {number(np.degrees(2 * np.sqrt(2) * reach), 2)}° across"
             draw.text(words, (left + side / 2, bottom - 9 * scale), "muted", size=11.0)
         draw.over()
-        self.names(draw, center, radius, wo, phi)
+        self.names(draw, center, radius, wo, phi, up, state.model.index())
         if bar:
-            logarithmic = self.scale == "log" and peak.value > 0
-            low = peak.value / 10**self.decades if logarithmic else 0.0
-            axis = Axis(low, peak.value or 1.0, scale="log" if logarithmic else "linear")
+            logarithmic = self.scale == "log" and most > 0
+            low = most / 10**self.decades if logarithmic else 0.0
+            axis = Axis(low, most or 1.0, scale="log" if logarithmic else "linear")
             colorbar(gpu, draw, np.array(bar) * scale, axis)
-        return draw
 
-    def map(self, gpu, state, wo, peak, name, size, middle, pixel):
+    def map(self, gpu, state, wo, up, peak, most, name, size, middle, pixel):
         """The quantity's picture, with `middle` of the disc in its middle and `pixel` of the disc's radius a pixel."""
         model = state.model
         slots = {f"of_{self.over}": self.quantity, "radius": self.scale}
-        uniforms = {"material": model, "wo": tuple(wo), "size": tuple(map(float, size)), "middle": tuple(middle)}
+        uniforms = {
+            "material": model,
+            "wo": tuple(wo),
+            "up": up,
+            "size": tuple(map(float, size)),
+            "middle": tuple(middle),
+        }
         uniforms |= {"pixel": float(pixel), "peak": tuple(disc(peak.w)), "decades": float(self.decades)}
-        uniforms |= {"share": 1 / peak.value if peak.value > 0 else 0.0}
+        uniforms |= {"share": 1 / most if most > 0 else 0.0}
         uniforms |= {"paper": rgb(Drawing(size, theme=state.look.theme).color("paper"))}
         if self.over == "wm":
             uniforms["alpha"] = model.alpha
             source = assemble("views/hemisphere_wm.frag", {**model.choices(), **slots})
         else:
             source = of_model("views/hemisphere_wi.frag", model, slots=slots)
-        target = gpu.target(f"hemisphere {name}", size, 4, "f1")
+        target = gpu.target(f"hemisphere {name} {up:+g}", size, 4, "f1")
         gpu.draw(gpu.program(source), target, uniforms)
         return target
 
-    def names(self, draw, center, radius, wo, phi):
+    def names(self, draw, center, radius, wo, phi, up, index):
         """Names of rings and directions, each on a chip of paper."""
         s = draw.scale
         taken = []
-        if self.over == "wi":
+        if up < 0:
+            straight = flat_refraction(wo, index)
+            marks = [("ωt", straight * [1, 1, -1], "accent")] if straight is not None else []
+        elif self.over == "wi":
             marks = [("ωo", wo, "accent"), ("ωr", wo * [-1, -1, 1], "accent")]
         else:
             marks = [("ωo", wo, "accent"), ("n", np.array([0.0, 0.0, 1.0]), "ink")]

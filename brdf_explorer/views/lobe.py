@@ -6,11 +6,12 @@ import numpy as np
 
 from ..glsl import assemble
 from ..lib.srgb import luminance
+from ..measure.grid import flat_refraction
 from ..model import param
 from .diagram import QUANTITIES, Diagram, apart, arrow, nice_step, number, powers_below, radius
 from .lines import Stroke, draw_lines
 from .picture import PALETTES, R2, Label, Picture, rgb
-from .table import NODES, RAYS, table
+from .table import NODES, RAYS, tables
 
 PASSES = 8  # jittered drawings whose mean has smooth edges
 BAR = 76  # points at the right for the legend
@@ -32,23 +33,26 @@ class Lobe(Diagram):
 
     def pictures(self, gpu, state, size, scale=1.0):
         colors = PALETTES[state.look.theme]
-        values = table(gpu, state.model, state.directions)
-        peak = self.peak(values)
+        values = tables(gpu, state.model, state.directions)
+        peak = max(map(self.peak, values))
         share = 1 / peak if peak > 0 else 0.0
         target = gpu.target("lobe", size, 4, "f1")
-        camera = Camera(self, size, scale)
-        below, above, labels = stage(camera, values.wo, colors)
-        _, wi, f = values.plane()
-        profile = luminance(f) * self.factor(wi) * share
-        outline = wi * radius(profile, self.radius, self.decades)[:, None]
-        above.append(camera.stroke(outline, colors["ink"], 1.0, 0.45))
-        note = "albedo " + "  ".join(f"{a:.3f}" for a in values.albedo)
+        camera = Camera(self, size, scale, both=len(values) > 1)
+        below, above, labels = stage(camera, values[0].wo, colors, state.model.index())
+        outlines = [self.outline(camera, t, share, colors) for t in values]
+        above.append(outlines[0])
+        note = described(values)
         over = gpu.program(assemble("views/over.frag"))
-        for layer, done in self.surfaces(gpu, values, camera, share):
+        surfaces = [self.surfaces(gpu.beside(f"lobe {i}"), t, camera, share) for i, t in enumerate(values)]
+        for layers in zip(*surfaces, strict=True):
             target.clear(*rgb(colors["paper"]), 1.0)
+            for layer, _ in layers[1:]:  # seen through the surface
+                picture = {"picture": layer.color_attachments[0]}
+                gpu.draw(over, target, {"share": 1.0}, picture, blend="premultiplied")
+                draw_lines(gpu, target, outlines[1:])
             draw_lines(gpu, target, below)
-            picture = {"picture": layer.color_attachments[0]}
-            gpu.draw(over, target, {"share": 1.0}, picture, blend="premultiplied")
+            layer, done = layers[0]
+            gpu.draw(over, target, {"share": 1.0}, {"picture": layer.color_attachments[0]}, blend="premultiplied")
             draw_lines(gpu, target, above)
             legend = self.draw_bar(gpu, target, size, scale, peak, colors)
             yield Picture(target, labels=labels + legend, note=note, done=done)
@@ -56,6 +60,12 @@ class Lobe(Diagram):
     def peak(self, values):
         """The largest of what the radius shows of a Table."""
         return float((luminance(values.f) * self.factor(values.grid.wi)).max())
+
+    def outline(self, camera, values, share, colors):
+        """The Stroke along the slice of a Table through the plane of incidence."""
+        _, wi, f = values.plane()
+        profile = luminance(f) * self.factor(wi) * share
+        return camera.stroke(wi * radius(profile, self.radius, self.decades)[:, None], colors["ink"], 1.0, 0.45)
 
     def surfaces(self, gpu, values, camera, share, paint="value", uniforms=None):
         """The lobe's triangles as (framebuffer of colour and coverage, done): one drawing, then the mean of several.
@@ -104,22 +114,33 @@ class Lobe(Diagram):
         return labels
 
 
-def stage(camera, wo, colors):
-    """What stands around a lobe: strokes below it, strokes over it, and Labels of the normal, the viewer and its mirror image."""
+def described(values):
+    """The albedo, or what is reflected and transmitted, by Tables of one material: a line of text."""
+    names = ("albedo",) if len(values) == 1 else ("reflected", "transmitted")
+    return ", ".join(f"{n} " + "  ".join(f"{a:.3f}" for a in t.albedo) for n, t in zip(names, values, strict=True))
+
+
+def stage(camera, wo, colors, index=None):
+    """What stands around a lobe: strokes below it, strokes over it, and Labels of the normal, the viewer, its mirror image, and
+    where a flat surface of an index refracts it to.
+    """
     turn = np.radians(np.arange(0, 361, 3))
     ring = np.stack([np.cos(turn), np.sin(turn), np.zeros(turn.size)], axis=-1)
     below = [camera.stroke(ring * r, colors["grid"]) for r in (0.25, 0.5, 0.75)]
     below += [camera.stroke([-ring[i], ring[i]], colors["grid"]) for i in range(0, 60, 10)]
     below.append(camera.stroke(ring, colors["muted"]))
     normal, mirror = np.array([0.0, 0.0, 1.0]), wo * [-1, -1, 1]
-    below += [camera.stroke([mirror * i / 28, mirror * (i + 1) / 28], colors["accent"]) for i in range(0, 32, 2)]
+    straight = flat_refraction(wo, index)
+    dashed = [("ωr", mirror)] + ([("ωt", straight)] if straight is not None else [])
+    for _, w in dashed:
+        below += [camera.stroke([w * i / 28, w * (i + 1) / 28], colors["accent"]) for i in range(0, 32, 2)]
     above = []
     for w, color in ((normal, "ink"), (wo, "accent")):
         for points in arrow(*camera.pixels([0 * w, ARROW * w]), camera.scale):
             below.append(Stroke(points, colors[color], 1.6 * camera.scale))
             above.append(Stroke(points, colors[color], 1.6 * camera.scale, 0.25))  # seen through the lobe
     labels = []
-    for name, w, color in (("ωo", wo, "accent"), ("n", normal, "ink"), ("ωr", mirror, "accent")):
+    for name, w, color in [("ωo", wo, "accent"), ("n", normal, "ink"), *((name, w, "accent") for name, w in dashed)]:
         start, tip = camera.pixels([0 * w, ARROW * w])
         x, y = tip + 12 * camera.scale * (tip - start) / max(np.linalg.norm(tip - start), 1e-9)
         y = camera.size[1] - y
@@ -129,10 +150,10 @@ def stage(camera, wo, colors):
 
 
 class Camera:
-    """An orthographic camera that looks at the hemisphere; directions in the surface's frame, z up."""
+    """An orthographic camera that looks at the hemisphere, or both; directions in the surface's frame, z up."""
 
-    def __init__(self, view, size, scale, bar=BAR):
-        """view: the Lobe's options; bar: points at the right that are kept free."""
+    def __init__(self, view, size, scale, bar=BAR, both=False):
+        """view: the Lobe's options; bar: points at the right that are kept free; both: with the lower hemisphere."""
         azimuth, elevation = np.radians(view.azimuth), np.radians(view.elevation)
         ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
         self.eye = np.array([ce * ca, ce * sa, se])
@@ -140,7 +161,8 @@ class Camera:
         self.up = np.array([-se * ca, -se * sa, ce])
         self.size, self.scale = size, scale
         # the box of the disc and of an upright arrow fits beside the legend, with room for labels
-        low, high = -se, max(ARROW * ce, se)
+        high = max(ARROW * ce, se)
+        low = -high if both else -se
         room = np.array([size[0] - (bar + 64) * scale, size[1] - 72 * scale])
         self.unit = max(min(room[0] / (2 * ARROW), room[1] / (high - low)), 1.0) * view.zoom
         self.center = np.array([(size[0] - bar * scale) / 2, size[1] / 2 - self.unit * (low + high) / 2])

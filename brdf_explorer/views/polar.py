@@ -5,15 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..lib.srgb import luminance
-from ..measure.grid import direction
+from ..measure.grid import direction, flat_refraction
 from ..model import choice
 from .diagram import QUANTITIES, Diagram, apart, arrow, nice_step, number, powers_below, radius
 from .drawing import Drawing, Drawn
 from .picture import Curves
-from .table import table
+from .table import tables
 
 MARGIN = 44  # points around the half disc, for the angles
-FOOT = 46  # points below it, for values and a note
+FOOT = 46  # points below it, for values and a note; half of that below a whole disc
 NODES = 385  # of each half of a slice: many more than the lobe has, so that no tip has corners in a large picture
 LINE = 18  # points from one line of the legend to the next
 LETTER = 5.6  # points that a letter of the legend takes, on average
@@ -23,7 +23,10 @@ LETTERS = 10  # that a line of the legend has room for at least
 
 @dataclass(frozen=True)
 class Polar(Drawn, Diagram):
-    """The slice through the plane of incidence: f or f cos over the direction to the light, as a polar plot."""
+    """The slice through the plane of incidence: f or f cos over the direction to the light, as a polar plot.
+
+    A half disc over the surface, or a whole one if one of the materials transmits.
+    """
 
     title = "Polar slice"
 
@@ -39,33 +42,40 @@ class Polar(Drawn, Diagram):
         """The materials that have curves."""
         return state.materials if self.curves == "materials" else (state.material,)
 
-    def disc(self, size, scale=1.0):
-        """Centre (2,) of the half disc in a picture of that size, pixels from the bottom left, and its radius."""
+    def whole(self, state):
+        """Whether there is light on both sides of the surface."""
+        return any(m.model.index() is not None for m in self.materials(state))
+
+    def disc(self, size, scale=1.0, whole=False):
+        """Centre (2,) of the half or whole disc in a picture of that size, pixels from the bottom left, and its radius."""
+        if whole:
+            return np.divide(size, 2), max(min(size) / 2 - MARGIN * scale, 1.0)
         around = (MARGIN + FOOT) * scale
         extent = max(min(size[0] / 2 - MARGIN * scale, size[1] - around), 1.0)
         return np.array([size[0] / 2, FOOT * scale + max(size[1] - extent - around, 0.0) / 2]), extent
 
     @np.errstate(under="ignore")  # in the tails of a density
     def slices(self, gpu, state):
-        """[(name, colour role or number, theta (n,), float32 values (n,), float64 values (n,))] of each curve."""
+        """[(name, colour role or number, theta (n,), float32 values (n,), float64 values (n,))] of each curve, and side."""
         found = []
         for index, material in enumerate(self.materials(state)):
-            t = table(gpu, material.model, state.directions, rays=2, nodes=NODES)
-            theta, wi, f32 = t.plane()
-            f64 = material.model.f(t.wo, wi)
-            cos = self.factor(wi)
-            if self.curves == "rgb":
-                for c, channel in enumerate(CHANNELS):
-                    found.append((channel, channel, theta, f32[:, c] * cos, f64[:, c] * cos))
-            else:
-                found.append((material.name, index, theta, luminance(f32) * cos, luminance(f64) * cos))
+            for t in tables(gpu, material.model, state.directions, rays=2, nodes=NODES):
+                theta, wi, f32 = t.plane()
+                f64 = material.model.f(t.wo, wi)
+                cos = self.factor(wi)
+                if self.curves == "rgb":
+                    for c, channel in enumerate(CHANNELS):
+                        found.append((channel, channel, theta, f32[:, c] * cos, f64[:, c] * cos))
+                else:
+                    found.append((material.name, index, theta, luminance(f32) * cos, luminance(f64) * cos))
         return found
 
     @np.errstate(under="ignore")
     def table_of(self, gpu, state):
         """The slices as Curves over theta in degrees, each evaluated at every angle that the grid of one of them has."""
         slices = self.slices(gpu, state)
-        x = np.unique(np.concatenate([s[2] for s in slices]))
+        x = np.concatenate([s[2] for s in slices])
+        x = np.unique(np.where(x < -np.pi, x + 2 * np.pi, x))
         phi = np.radians(state.directions.phi_o)
         wo, wi = direction(np.radians(state.directions.theta_o), phi), direction(x, phi)
         y = {}
@@ -85,7 +95,8 @@ class Polar(Drawn, Diagram):
         slices = self.slices(gpu, state)
         peak = max(float(np.max(s[3])) for s in slices)
         top = 1.04 * peak if peak > 0 else 1.0
-        center, extent = self.disc(size, scale)
+        whole = self.whole(state)
+        center, extent = self.disc(size, scale, whole)
         theta_o = np.radians(state.directions.theta_o)
 
         def place(theta, share):
@@ -104,8 +115,8 @@ class Polar(Drawn, Diagram):
         else:
             rings = powers_below(top, self.decades)
         rings = rings[reach(rings) > 0.08]
-        arc = np.linspace(-np.pi / 2, np.pi / 2, 181)
-        spokes = np.radians(np.arange(-90, 91, 15))
+        arc = np.linspace(-np.pi / 2, np.pi / 2, 181) * (2 if whole else 1)
+        spokes = np.radians(np.arange(-180, 166, 15) if whole else np.arange(-90, 91, 15))
         for r in reach(rings):
             stroke(arc, r, "grid", 1.0)
         for a in spokes:
@@ -121,34 +132,37 @@ class Polar(Drawn, Diagram):
         for i in apart(extent * reach(rings), [(5.5 * len(w) + 4) * scale for w in words]):
             draw.text(words[i], place(np.pi / 2, reach(rings[i])) - [0, 12 * scale], "muted", size=11.0)
 
-        # the viewer, and dashed where a mirror would send its ray
+        # the viewer, and dashed where a mirror and a flat surface of the active material would send its ray
+        straight = flat_refraction(direction(theta_o, 0.0), state.model.index())
         for points in arrow(center, place(theta_o, 1.0), scale):
             draw.stroke(points, "accent", 1.6)
         for i in range(0, 40, 2):
             stroke(-theta_o, np.array([i, i + 1]) / 40, "accent", 1.0)
+            if straight is not None:
+                stroke(np.arctan2(-np.hypot(*straight[:2]), straight[2]), np.array([i, i + 1]) / 40, "accent", 1.0)
         draw.text("ωo", viewer, "accent", size=13.0)
 
         legend = [(QUANTITIES[self.quantity], "ink")]
         for name, key, theta, f32, _ in slices:
             color = key if self.curves == "rgb" else colors["curves"][key % len(colors["curves"])]
             stroke(theta, reach(f32), color, 4.0)
-            legend.append((name, color))
+            legend += [(name, color)] * ((name, color) not in legend)
         draw.over()
         if self.reference == "on":
             for _, _, theta, _, f64 in slices:
                 stroke(theta, reach(f64), "reference", 1.0)
             legend.append(("float64", "reference"))
-        for words, color, side, y in self.columns(legend, size, scale):
+        for words, color, side, y in self.columns(legend, size, scale, whole):
             x = 12 * scale if side == "left" else width - 12 * scale
             draw.text(words, (x, height - y), color, (0.0 if side == "left" else 1.0, 0.5), 12.5)
         yield draw, f"peak {number(peak, 4)} / sr at θo = {state.directions.theta_o:g}°", True
 
-    def columns(self, legend, size, scale):
+    def columns(self, legend, size, scale, whole=False):
         """The legend [(words, colour)] in the upper corners, clear of angles and viewer: [(words, colour, side, y from the top)].
 
         Words that are too long end in an ellipsis. Where lines do not suffice, the last says how many more there are.
         """
-        center, extent = self.disc(size, scale)
+        center, extent = self.disc(size, scale, whole)
         least = min(LETTERS, max(len(words) for words, _ in legend))
         lines = []
         for side, around in (("left", 28), ("right", 50)):

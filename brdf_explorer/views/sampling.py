@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..lib import slot
-from ..lib.common import normalize
 from ..measure.albedo import quadrature
 from ..measure.cost import costs, fill, sample, summary
 from ..measure.estimator import FIRST, RUNS, Runs, Surroundings, moments, rms_error, samplers, slope, surroundings
@@ -182,7 +181,7 @@ def note(found):
 @np.errstate(under="ignore")
 def expected(model, wo):
     """Polar angles (n,) of directions that follow the lobe, and the probability by pdf that each stands for."""
-    g, weight = quadrature(wo, model.slopes(), 320)
+    g, weight = quadrature(wo, model.slopes(), 320, model.index())
     return angles(g.wi)[0].ravel(), (model.pdf(wo, g.wi) * weight).ravel()
 
 
@@ -325,10 +324,10 @@ def draw_histogram(draw, box, state, found, colors):
     s = draw.scale
     runs = found.runs[found.own]
     theta = np.degrees(angles(runs.wi[runs.weight > 0])[0])
-    low, high = np.quantile(theta, [0.002, 0.998]) if len(theta) else (0.0, 90.0)
-    low, high = (
-        (0.0, 90.0) if high - low > 45 else (max(low - 0.1 * (high - low), 0), min(high + 0.1 * (high - low), 90))
-    )
+    last = 180.0 if state.model.transmits else 90.0
+    low, high = np.quantile(theta, [0.002, 0.998]) if len(theta) else (0.0, last)
+    margin = 0.1 * (high - low)
+    low, high = (0.0, last) if high - low > 45 else (max(low - margin, 0), min(high + margin, last))
     edges = np.linspace(low, max(high, low + 1e-9), BINS + 1)
     drawn = np.histogram(theta, edges)[0] / max(len(runs.wi), 1)
     theta_i, mass = found.expected or (np.zeros(0), np.zeros(0))
@@ -441,8 +440,7 @@ def profile(model, theta_o, phi, points=40):
     n = 8192
     u = np.random.default_rng(1).random((n, 2))
     up = np.array([0.0, 0.0, 1.0])
-    drawn = replace(model, sampling="ndf") if "sampling" in model.choices() else model
-    wm = normalize(up + drawn.sample_f(up, u)[0] + 1e-12 * up)
+    wm = slot("sampling", model.ndf, "caps").sample_wm(up, u, np.array(model.alpha))  # as seen from above: by D cos
     slopes = np.sort(-(wm[:, 0] * np.cos(phi) + wm[:, 1] * np.sin(phi)) / wm[:, 2])
     slopes = slopes[((np.arange(FACETS) + 0.5) / FACETS * n).astype(int)]
     random = np.random.default_rng(1)

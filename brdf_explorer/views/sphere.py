@@ -1,4 +1,8 @@
-"""A sphere of the material, lit by a directional light and by an environment."""
+"""A sphere of the material, lit by a directional light and by an environment.
+
+A material that transmits is a solid ball: light enters, is refracted, and leaves where it meets the surface from inside, which is
+as rough there (shaders/views/body_ball.glsl).
+"""
 
 from dataclasses import dataclass
 
@@ -16,7 +20,7 @@ SMOOTH = 16  # jittered passes after which edges and highlights of a directional
 
 @dataclass(frozen=True)
 class Sphere(View):
-    """A sphere of the material under the light of the state."""
+    """A sphere of the material under the light of the state; a solid ball if the material transmits."""
 
     title = "Sphere"
 
@@ -46,19 +50,23 @@ class Sphere(View):
             uniforms |= {"turn": turn(light), "gain": light.gain}
             textures = environment_textures(gpu, light)
         lighting = "both" if len(lights) == 2 else lights[0] if lights else "dark"
-        fragment = of_model("views/sphere.frag", state.model, slots={"lighting": lighting}, formulas=self.formulas)
+        body = "opaque" if state.model.index() is None else "ball"
+        fragment = of_model(
+            "views/sphere.frag", state.model, slots={"lighting": lighting, "body": body}, formulas=self.formulas
+        )
         program = gpu.program(fragment, assemble("views/disc.vert"))
         width, height = map(float, size)
         uniforms |= {"size": (width, height), "center": (width / 2, height / 2), "radius": self.radius(size)}
         uniforms |= {"sides": float(SIDES)}
         target = gpu.target("sphere", size)  # new ones are clear, and what lies outside of the disc stays so
-        most = self.samples if textures else SMOOTH
+        drawn = bool(textures) or body == "ball"  # by random numbers
+        most = self.samples if drawn else SMOOTH
         noise, half = None, None
         for n in range(1, most + 1):
             jitter = (R2 * (n - 1) + 0.5) % 1.0 - 0.5
             uniforms |= {"jitter": tuple(jitter), "share": 1 / n, "pass": n - 1}
             gpu.draw(program, target, uniforms, textures, vertices=3 * SIDES, blend="mean" if n > 1 else None)
-            if textures and n >= 16 and n & (n - 1) == 0:
+            if drawn and n >= 16 and n & (n - 1) == 0:
                 mean = gpu.pixels(target)
                 noise = standard_error(mean, half) if half is not None else None
                 half = mean

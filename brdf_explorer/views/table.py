@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from ..glsl import of_model
-from ..measure.grid import Grid, direction, grid, plane_of_incidence
+from ..measure.grid import Grid, Side, direction, grid, plane_of_incidence, sides
 from ..model import Invalid
 
 RAYS = 96
@@ -16,12 +16,13 @@ EDGE = 1 - 1e-5  # the last node, just above the horizon: on it f is 0 and its l
 
 @dataclass(frozen=True)
 class Table:
-    """float32 f of the GLSL on a Grid. Rays 0 and RAYS / 2 are the plane of incidence."""
+    """float32 f of the GLSL on a Grid of one side of the surface. Rays 0 and RAYS / 2 are the plane of incidence."""
 
     grid: Grid
     t: np.ndarray  # (nodes,)
     wo: np.ndarray  # (3,)
     phi: float  # azimuth of wo, radians
+    side: Side
     directions: object  # texture of wi, a row a ray
     target: object  # framebuffer of (f, 0)
     gpu: object
@@ -47,32 +48,44 @@ class Table:
 
     @property
     def albedo(self):
-        """Directional albedo by this table, (3,); `measure.albedo` is the accurate one."""
-        return np.einsum("ptc,pt->c", self.f, self.weight * self.grid.wi[..., 2])
+        """Share of the energy scattered to this side, (3,), by this table; `measure.shares` is the accurate one."""
+        return self.side.dense * np.einsum("ptc,pt->c", self.f, self.weight * np.abs(self.grid.wi[..., 2]))
 
     def plane(self):
         """The plane of incidence from horizon to horizon: theta (n,), wi (n, 3), f (n, 3).
 
-        theta rises from the far side, where the mirror direction is at -theta_o, to the viewer's side.
+        theta rises from the far side, where the mirror direction is at -theta_o, to the viewer's side. Below the surface it goes
+        on through -180 degrees, straight down, and rises as well.
         """
         half = len(self.grid.wi) // 2
         # ray 0 tilts facets away from the viewer, so it holds the directions beyond the mirror direction
         wi = np.concatenate([self.grid.wi[0, ::-1], self.grid.wi[half, 1:]])
         f = np.concatenate([self.f[0, ::-1], self.f[half, 1:]])
         side = wi[:, 0] * np.cos(self.phi) + wi[:, 1] * np.sin(self.phi)
-        return np.arctan2(side, wi[:, 2]), wi, f
+        theta = np.arctan2(side, wi[:, 2])
+        if self.side.up > 0:
+            return theta, wi, f
+        return theta[::-1] - 2 * np.pi * (theta[::-1] > 0), wi[::-1], f[::-1]
 
 
 def table(gpu, model, directions, rays=RAYS, nodes=NODES):
-    """The Table of a model for the viewer's Directions."""
+    """The Table of a model for the viewer's Directions, of the viewer's side of the surface."""
+    return tables(gpu, model, directions, rays, nodes, most=1)[0]
+
+
+def tables(gpu, model, directions, rays=RAYS, nodes=NODES, most=2):
+    """The Tables of a model for the viewer's Directions: above the surface and, where light is transmitted, below it."""
     phi = np.radians(directions.phi_o)
     wo = direction(np.radians(directions.theta_o), phi)
-    alpha = model.slopes()
-    psi = plane_of_incidence(phi, alpha) + 2 * np.pi * np.arange(rays) / rays
     t = np.linspace(0.0, EDGE, nodes)
-    g = grid(wo, alpha, t, psi)
-    texture = gpu.texture(np.concatenate([g.wi, np.ones((rays, nodes, 1))], axis=-1))
-    target = gpu.ctx.framebuffer([gpu.ctx.texture((nodes, rays), 4, dtype="f4")])
     program = gpu.program(of_model("views/table.frag", model))
-    gpu.draw(program, target, {"material": model, "wo": tuple(wo)}, {"directions": texture})
-    return Table(g, t, wo, phi, texture, target, gpu)
+    found = []
+    for side in sides(wo, model.slopes(), model.index())[:most]:
+        psi = plane_of_incidence(phi, side.alpha) + 2 * np.pi * np.arange(rays) / rays
+        g = grid(side.wo, side.alpha, t, psi)
+        g = Grid(side.turned(g.wi), g.density)
+        texture = gpu.texture(np.concatenate([g.wi, np.ones((rays, nodes, 1))], axis=-1))
+        target = gpu.ctx.framebuffer([gpu.ctx.texture((nodes, rays), 4, dtype="f4")])
+        gpu.draw(program, target, {"material": model, "wo": tuple(wo)}, {"directions": texture})
+        found.append(Table(g, t, wo, phi, side, texture, target, gpu))
+    return found

@@ -12,11 +12,11 @@ float visible_slope_beckmann(float u, float sin_o, float cos_o) {
   const float HALF_INV_SQRT_PI = 0.282094792;
   float low = -6.0;
   if (u == 0.0) return low;  // the root is at -infinity: 24 steps would end anywhere on the way
-  float high = min(cos_o / max(sin_o, 1e-9), 6.0);  // beyond 6 lies 1e-17 of the area; facets steeper than cot face away
+  float high = clamp(cos_o / max(sin_o, 1e-9), -6.0, 6.0);  // beyond 6 lies 1e-17 of the area; facets steeper than cot face away
   float head = 0.5 * cos_o + HALF_INV_SQRT_PI * sin_o;  // visible area of the slopes below 0
-  float tail = sin_o * exp_precise(-high * high) * h_beckmann(high);  // visible area less cos_o: cos_o Lambda
-  float area = cos_o + tail;
-  bool upper = u * area > head;
+  float tail = sin_o * exp_precise(-high * high) * h_beckmann(abs(high));  // visible area less cos_o, or from below all of it
+  float area = max(cos_o, 0.0) + tail;
+  bool upper = cos_o > 0.0 && u * area > head;
   if (upper) low = 0.0; else high = min(high, 0.0);
   float x = 0.5 * (low + high);
   for (int i = 0; i < 24; ++i) {
@@ -35,15 +35,18 @@ float visible_slope_beckmann(float u, float sin_o, float cos_o) {
   return x;
 }
 
-vec3 sample_wi(vec3 wo, vec2 u, vec2 alpha) {
+// A visible normal; wo may lie below the horizon.
+vec3 sample_wm(vec3 wo, vec2 u, vec2 alpha) {
   vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
   float sin_o = length(v.xy);
   vec2 azimuth = sin_o > 0.0 ? v.xy / sin_o : vec2(1.0, 0.0);
   float along = visible_slope_beckmann(u.x, sin_o, v.z);
   float across = visible_slope_beckmann(u.y, 0.0, 1.0);
   vec2 slope = along * azimuth + across * vec2(-azimuth.y, azimuth.x);
-  return mirror(wo, normalize(vec3(-alpha * slope, 1.0)));
+  return normalize(vec3(-alpha * slope, 1.0));
 }
+
+vec3 sample_wi(vec3 wo, vec2 u, vec2 alpha) { return mirror(wo, sample_wm(wo, u, alpha)); }
 
 float pdf_wi(vec3 wo, vec3 wi, float density, vec2 alpha) { return density / (4.0 * visible_area(wo, alpha)); }
 

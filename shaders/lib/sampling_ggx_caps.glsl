@@ -4,11 +4,14 @@
 #include "lib/common.glsl"
 #include "lib/ndf_ggx.glsl"
 
-vec3 sample_wi(vec3 wo, vec2 u, vec2 alpha) {
+// A visible normal; wo may lie below the horizon.
+vec3 sample_wm(vec3 wo, vec2 u, vec2 alpha) {
   vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
   vec3 sum = sum_with_cap(v, u, 0.0);
-  return mirror(wo, normalize(vec3(alpha * sum.xy, sum.z)));
+  return normalize(vec3(alpha * sum.xy, sum.z));
 }
+
+vec3 sample_wi(vec3 wo, vec2 u, vec2 alpha) { return mirror(wo, sample_wm(wo, u, alpha)); }
 
 float pdf_wi(vec3 wo, vec3 wi, float density, vec2 alpha) { return density / (4.0 * visible_area(wo, alpha)); }
 

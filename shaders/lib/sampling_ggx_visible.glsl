@@ -4,7 +4,7 @@
 #include "lib/common.glsl"
 #include "lib/ndf_ggx.glsl"
 
-vec3 sample_wi(vec3 wo, vec2 u, vec2 alpha) {
+vec3 sample_wm(vec3 wo, vec2 u, vec2 alpha) {
   vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
   float sin_o = length(v.xy);
   vec2 azimuth = sin_o > 0.0 ? v.xy / sin_o : vec2(1.0, 0.0);
@@ -20,8 +20,10 @@ vec3 sample_wi(vec3 wo, vec2 u, vec2 alpha) {
   float z = sqrt(up * (0.5 * sin_o * sin_o * w + s * s * down));  // sqrt(w^2 - y^2)
   float height = y < 0.0 ? s * down * (w * v.z - y) / (z * v.z - y * sin_o) : z * v.z + y * sin_o;
   vec2 xy = (z * sin_o - y * v.z) * azimuth + p.x * vec2(-azimuth.y, azimuth.x);
-  return mirror(wo, normalize(vec3(alpha * xy, height)));
+  return normalize(vec3(alpha * xy, height));
 }
+
+vec3 sample_wi(vec3 wo, vec2 u, vec2 alpha) { return mirror(wo, sample_wm(wo, u, alpha)); }
 
 float pdf_wi(vec3 wo, vec3 wi, float density, vec2 alpha) { return density / (4.0 * visible_area(wo, alpha)); }
 

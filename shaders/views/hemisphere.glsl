@@ -3,6 +3,7 @@
 #include "lib/colormap.glsl"
 
 uniform vec3 wo;
+uniform float up;       // 1 above the surface, -1 below it
 uniform vec2 size;      // of the picture, pixels
 uniform vec2 middle;    // of the picture, on the disc
 uniform float pixel;    // side of a pixel on the disc
@@ -18,7 +19,7 @@ void main() {
   p += clamp(peak - p, -0.5 * pixel, 0.5 * pixel);  // so a lobe thinner than a pixel does not fall between two
   p /= max(length(p) / (1.0 - 1e-6), 1.0);
   float r2 = dot(p, p);
-  float value = quantity(wo, vec3(p * sqrt(2.0 - r2), 1.0 - r2));
+  float value = quantity(wo, vec3(p * sqrt(2.0 - r2), up * (1.0 - r2)));
   bool wrong = isnan(value) || isinf(value);
   color = vec4(mix(paper, wrong ? vec3(1.0, 0.0, 1.0) : viridis(radius(value * share, decades)), coverage), 1.0);
 }

@@ -1,3 +1,3 @@
 #include "lib/srgb.glsl"
 
-float quantity(vec3 wo, vec3 wi) { return luminance(f(wo, wi)) * wi.z; }
+float quantity(vec3 wo, vec3 wi) { return luminance(f(wo, wi)) * abs(wi.z); }

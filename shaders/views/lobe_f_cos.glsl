@@ -1,1 +1,1 @@
-float quantity(float f, vec3 wi) { return f * wi.z; }
+float quantity(float f, vec3 wi) { return f * abs(wi.z); }
