@@ -521,6 +521,56 @@ def print_tradeoff(one):
     print_table(heads, rows, title=f"{title} {one['metric']['title']}, against {one['reference']['name']}")
 
 
+@main.command(cls=Flagged, sections=("material",), scene="studio")
+@preset_argument
+@scene_option
+@click.option(
+    "--tolerance", type=Number(1e-9, 10), default=0.01, show_default=True, help="Largest error of the picture."
+)
+@click.option("--metric", metavar="METRIC", help="Measure of error: picture, brightness, flip or itp, of the sphere.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@click.option("--size", type=Size(), default="1200x680", show_default=True, help="Pixels of a picture.")
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE",
+    help="The reduced preset (.toml), a picture (.png, .svg, .pdf) or numbers (.json).",
+)
+def least(state, preset, tolerance, metric, as_json, size, output):
+    """Find the cheapest methods that are enough for PRESET in its scene.
+
+    Of all combinations of methods the cheapest whose sphere is surely within the tolerance of the most accurate one's. The
+    tolerance is a share of the mean, or for flip and itp their own number.
+    """
+    import json
+
+    from .export import DRAWINGS, known_suffix, save_view, write_png
+    from .gpu import offscreen
+    from .measure.least import HEADS, report, result, rows, sentences
+    from .state import dumps, save
+
+    state = state.with_view("least", tolerance=tolerance, **({"metric": metric} if metric else {}))
+    if output:
+        suffix = known_suffix(output, {".toml": save, ".json": None, ".png": write_png, **DRAWINGS}, "an answer")
+    with offscreen() as gpu, progress() as show:
+        answer = result(state.views["least"].answer(gpu, state), show)
+        text = json.dumps(report(answer) | {"preset": dumps(answer.reduced)}, indent=2, allow_nan=False)
+        if output and suffix == ".toml":
+            save(answer.reduced, output)
+        elif output and suffix == ".json":
+            write_text(output, f"{text}\n")
+        elif output:
+            save_view(gpu, state, "least", output, size, watch=show)
+    if as_json:
+        click.echo(text)
+        return
+    print_table(HEADS, rows(answer), title=state.material.name)
+    click.echo("\n".join(sentences(answer)))
+    click.echo(answer.device)
+    if output:
+        click.echo(output)
+
+
 def write_text(path, text):
     from .state import replacing
 

@@ -118,7 +118,7 @@ class Microfacet(Model):
         return fit + 3.2e-3 * (self.smith == "rational")
 
     def _not_reciprocal(self):
-        """A bound of |f(wo, wi) - f(wi, wo)| over the larger one: 1 - 1 / gain, of the largest of Turquin's gains; all are at least 1."""
+        """A bound of |f(wo, wi) - f(wi, wo)| over the larger one: 1 - 1 / gain, Turquin's largest; none is below 1."""
         cosine, phi = np.meshgrid(np.geomspace(1e-5, 1, 200), [0.0, 0.5 * np.pi])
         sine = np.sqrt((1 - cosine) * (1 + cosine))
         w = vec(sine * np.cos(phi), sine * np.sin(phi), cosine)

@@ -114,7 +114,7 @@ class Canvas:
         if (hovered or imgui.is_item_active()) and (link and link.state or self.name in gestures.DRAGGED):
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
         if link and link.state and imgui.is_item_clicked():
-            return link.state
+            return link.state(state) if callable(link.state) else link.state
         moved = imgui.is_item_activated() or any(delta)
         if imgui.is_item_active() and moved:
             if self.name == "sphere" and state.light.irradiance > 0:

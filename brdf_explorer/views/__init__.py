@@ -4,6 +4,7 @@ from .chart import Chart
 from .compare import Compare
 from .factors import Factors
 from .hemisphere import Hemisphere
+from .least import Least
 from .lobe import Lobe
 from .microsurface import Microsurface
 from .polar import Polar
@@ -13,5 +14,5 @@ from .stability import Stability
 
 VIEWS = {
     view.name(): view
-    for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Sampling, Compare, Chart, Stability, Microsurface)
+    for view in (Sphere, Lobe, Polar, Factors, Hemisphere, Sampling, Compare, Chart, Stability, Least, Microsurface)
 }

@@ -144,20 +144,28 @@ class Compare(Drawn):
     def difference(self, draw, gpu, box, targets, pixels):
         """B less A, its luminance over A's mean."""
         s = draw.scale
-        left, bottom, right, top = box
-        a, b = (luminance(p[..., :3].astype(float)) for p in pixels)
-        mean = a[pixels[0][..., 3] > 0].mean()
-        largest = max(float(np.quantile(np.abs(b - a), 0.999)), LEAST * max(mean, LEAST))
-        width, height = targets[0].size
-        target = gpu.target("compare difference", (width, height), 4, "f1")
-        uniforms = {"share": 1 / largest, "backdrop": rgb(draw.colors["paper"])}
-        textures = {"picture": targets[1].color_attachments[0], "reference": targets[0].color_attachments[0]}
-        gpu.draw(gpu.program(assemble("views/difference.frag")), target, uniforms, textures)
-        draw.raster(np.round([(left + right - width) / 2, (bottom + top - height) / 2]), target)
-        percent = f"±{number(100 * largest / mean, 2)} %" if mean > 0 else "A is black"
+        left, _, right, top = box
+        largest = difference_map(gpu, draw, "compare difference", box, targets, pixels)
+        percent = f"±{number(100 * largest, 2)} %" if largest is not None else "A is black"
         wide = (right - left) / s > 260
         words = f"B less A (red: B is brighter), {percent} of A's mean" if wide else f"B less A, {percent}"
         draw.text(words, (left, top + 12 * s), "ink", (0.0, 0.5), 12.5)
+
+
+def difference_map(gpu, draw, name, box, targets, pixels):
+    """Draw how much brighter the second of two pictures is than the first; the largest difference over the first's mean, or
+    None if that is black. name: of the map's target."""
+    left, bottom, right, top = box
+    a, b = (luminance(p[..., :3].astype(float)) for p in pixels)
+    mean = a[pixels[0][..., 3] > 0].mean()
+    largest = max(float(np.quantile(np.abs(b - a), 0.999)), LEAST * max(mean, LEAST))
+    width, height = targets[0].size
+    target = gpu.target(name, (width, height), 4, "f1")
+    uniforms = {"share": 1 / largest, "backdrop": rgb(draw.colors["paper"])}
+    textures = {"picture": targets[1].color_attachments[0], "reference": targets[0].color_attachments[0]}
+    gpu.draw(gpu.program(assemble("views/difference.frag")), target, uniforms, textures)
+    draw.raster(np.round([(left + right - width) / 2, (bottom + top - height) / 2]), target)
+    return largest / mean if mean > 0 else None
 
 
 def cut(words, room):

@@ -66,7 +66,8 @@ class Label:
 class Link:
     """A place in a picture that reacts to the mouse. box: left, top, right, bottom in pixels from the top left.
 
-    tip shows while the mouse is there, line by line; a click makes `state` the current one, if there is one.
+    tip shows while the mouse is there, line by line; a click makes `state` the current one, if there is one, or what it gives
+    for the current one, if it is a function.
     """
 
     box: tuple[float, float, float, float]
