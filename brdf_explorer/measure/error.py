@@ -194,19 +194,21 @@ class Metric:
     """A measure of error.
 
     compares "values" or "pictures": function(found, reference) of two of these -> float; "samples": function(model, alpha, n).
+    extreme  whether it is the largest of many values, not a mean, which noise makes larger
     """
 
     title: str
     compares: str
     function: Callable
     unit: str = ""
+    extreme: bool = False
 
 
 METRICS = {
     "rmse": Metric("relative RMSE of f cos θ", "values", rmse),
-    "maximum": Metric("largest relative error of f", "values", largest),
+    "maximum": Metric("largest relative error of f", "values", largest, extreme=True),
     "energy": Metric("largest error of albedo", "values", energy),
-    "reciprocity": Metric("largest error of reciprocity", "values", reciprocity),
+    "reciprocity": Metric("largest error of reciprocity", "values", reciprocity, extreme=True),
     "spread": Metric("relative standard error of one sample", "samples", spread),
     "picture": Metric("relative RMSE of the sphere", "pictures", picture_rmse),
     "brightness": Metric("relative error of the sphere's mean", "pictures", picture_energy),
