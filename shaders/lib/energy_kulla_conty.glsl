@@ -6,7 +6,7 @@
 #include "lib/transcendental.glsl"
 
 // What facets that each reflect F_mean return of the light that one reflection lost: of each further reflection E_mean leaves. Two at
-// least have been made, so F_mean counts twice: with once, as the slides print it, metals of alpha = 1 err three times as much.
+// least have been made, so F_mean counts twice.
 vec3 F_multiple(vec3 F_mean, float lost_mean) {
   return F_mean * F_mean * ((1.0 - lost_mean) / (1.0 - F_mean * lost_mean));
 }
