@@ -48,7 +48,7 @@ def test_what_is_lost_is_what_quadrature_finds(ndf, shadowing):
     assert np.max(np.abs(lost - (1 - white(ndf=ndf, shadowing=shadowing)))) < 1.15 * stated(ndf, shadowing) + 1e-4
 
 
-ANISOTROPIC = [(1.0, 0.05), (0.6, 0.2), (0.01, 0.3), (0.1, 0.05)]
+ANISOTROPIC = [(1.0, 0.05), (0.6, 0.2), (0.01, 1.0), (0.1, 0.05)]
 
 
 @pytest.mark.parametrize(("ndf", "figure"), [("ggx", 0.05), ("beckmann", 0.1)])
@@ -187,6 +187,12 @@ def test_errors_against_the_walk_are_what_is_lost(gpu):
     assert found["kulla_conty"].value < 4 * found["kulla_conty"].error + 2e-3
     assert found["walk_2"].value > 10 * found["walk_2"].error
     assert found["walk"].value == 0 < found["walk"].error < 0.05
+
+
+def test_errors_of_rough_gold(gpu):
+    *_, found = kept_errors(gpu, ENERGY, load("rough_gold"), "energy")
+    for name, figure in {"none": 0.66, "turquin": 0.06, "kulla_conty": 0.05, "walk_2": 0.35}.items():
+        assert found[name].value == pytest.approx(figure, abs=4 * found[name].error + 0.005)
 
 
 def test_the_largest_of_noise_is_no_error(gpu):

@@ -158,7 +158,7 @@ def senseless(ladder, state, metric):
     if not ladder.applies(state):
         return "The question does not arise for this material in this light."
     if METRICS[metric].extreme and ladder.stochastic(state):
-        return f"f of one of its methods is an estimate, and {metric} would be the largest of its noise. Choose rmse or energy."
+        return f"f of one of its methods is an estimate: {metric} would be the largest of its noise. Choose rmse or energy."
     if METRICS[metric].compares in JUDGED[ladder.measures]:
         return ""
     about = {"f": "the values of f", "samples": "how samples are drawn", "picture": "how the picture is made"}
@@ -271,8 +271,8 @@ def value_errors(gpu, ladder, state, metric):
 def estimate_errors(gpu, ladder, state, metric):
     """As `value_errors` where f of some methods is an estimate: of these, means of PARTS x WALKS by the shader, in float32.
 
-    A square of a difference holds that of the noise, which falls as 1 / PARTS: the jackknife takes it away, and says how uncertain
-    the rest is. The reference's own error is half of that of one half of its tables from the other.
+    A square of a difference holds that of the noise, which falls as 1 / PARTS: the jackknife takes it away, and says how
+    uncertain the rest is. The reference's own error is half of that of one half of its tables from the other.
     """
     reference = ladder.reference(state)
     models = {m.name: ladder.at(state, m).model for m in ladder.methods}
