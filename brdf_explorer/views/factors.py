@@ -1,6 +1,6 @@
 """The factors of a microfacet model along the plane of incidence: D, G, F, the Jacobian, and their product, which is f."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,7 +28,10 @@ WIDE, NARROW = 158, 74  # points of a column of the legend
 
 @dataclass(frozen=True)
 class Factors(Drawn):
-    """The factors of a microfacet model, curve by curve, over the direction to the light in the plane of incidence."""
+    """The factors of a microfacet model, curve by curve, over the direction to the light in the plane of incidence.
+
+    Of one reflection, whatever the material puts back of more.
+    """
 
     title = "Factors"
 
@@ -48,7 +51,7 @@ class Factors(Drawn):
     @np.errstate(under="ignore")  # in the tails of a density
     def curves(self, gpu, state):
         """theta (n,) in radians, positive on the viewer's side, and name -> values (n,); f by the shader, the rest float64."""
-        t = table(gpu, state.model, state.directions, rays=2, nodes=NODES)
+        t = table(gpu, alone(state.model), state.directions, rays=2, nodes=NODES)
         theta, wi, f = t.plane()
         values = {name: np.asarray(v) for name, v in state.model.factors(t.wo, wi).items()}
         return theta, values | {"F": luminance(values["F"]), "product": luminance(f)}
@@ -106,4 +109,9 @@ class Factors(Drawn):
     def mirror(self, state):
         """Luminance of f in the mirror direction."""
         wo = direction(np.radians(state.directions.theta_o), np.radians(state.directions.phi_o))
-        return float(luminance(state.model.f(wo, wo * [-1, -1, 1])))
+        return float(luminance(alone(state.model).f(wo, wo * [-1, -1, 1])))
+
+
+def alone(model):
+    """The material without what its choice `energy` puts back: of that f is no product."""
+    return replace(model, energy="none") if "energy" in model.choices() else model
