@@ -138,7 +138,7 @@ LADDERS = {
             "How exact must the reflectance of a facet be?",
             "f",
             ("schlick", "dielectric", "conductor"),
-            applies=lambda model: model.fresnel != "one",
+            applies=lambda model: model.fresnel != "one" and getattr(model, "facets", "conductor") == "conductor",
             outside={"dielectric": absorbs},
         ),
         # "diffuse" has two truths: a rough surface is not a heap of grains, so each has its own question

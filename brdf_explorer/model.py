@@ -164,6 +164,10 @@ class Model(Declared):
         """Index of the medium below over that above, by which lobes below bend; None for a material that transmits nothing."""
         return 1.0 if self.transmits else None
 
+    def parts(self):
+        """{name: model} of models whose f add up to this one's, where a diagram shows them each; else {}."""
+        return {}
+
     def exceptions(self):
         """Laws of measure/laws.py that this material is known to break, by name, each with the limit that it keeps instead."""
         return {}

@@ -43,10 +43,9 @@ PAGES = {  # shelf, book and page of the refractiveindex.info database
     "nickel": ("main", "Ni", "Johnson"),
     "palladium": ("main", "Pd", "Johnson"),
     "mercury": ("main", "Hg", "Inagaki"),
-    "glass": ("specs", "SCHOTT-optical", "N-BK7"),
     "ceramic": ("glass", "soda-lime", "Rubin-clear"),
 }
-TRANSPARENT = ("glass", "ceramic")  # k, below 1e-5, is taken as 0
+TRANSPARENT = ("ceramic",)  # k, below 1e-5, is taken as 0
 LINES = (645, 526, 444)  # nm
 COS = np.cos(np.radians(np.arange(90)))
 RANGES = [(p.low, p.high) for p in (declared(MODELS["microfacet"])[name] for name in ("eta", "k"))]

@@ -271,12 +271,12 @@ def test_the_command_prints_and_writes_what_was_measured(run):
 
 
 def test_the_json_holds_all_numbers(run):
-    done = run("--preset", "glass", "--json", "-o", "x.json")
+    done = run("--preset", "ceramic", "--json", "-o", "x.json")
     assert done.exit_code == 0, done.output
     tree = json.loads(done.stdout)
     assert tree == json.loads(Path("x.json").read_text(encoding="utf-8"))
     assert {"machine", "driver", "tolerance", "ladders", "preset"} == set(tree)
-    state = load("glass", load("studio"))
+    state = load("ceramic", load("studio"))
     assert [one["ladder"] for one in tree["ladders"]] == [n for n, k in LADDERS.items() if k.applies(state)]
     for one in tree["ladders"]:
         ladder = LADDERS[one["ladder"]]

@@ -82,7 +82,7 @@ def generous(asked, seed=3):
     return Prices(1.0, change, passes)
 
 
-CASES = [("white_microfacets", "white_furnace", 0.2), ("gold", "one_light", 0.02), ("glass", "studio", 0.3)]
+CASES = [("white_microfacets", "white_furnace", 0.2), ("gold", "one_light", 0.02), ("ceramic", "studio", 0.3)]
 
 
 @pytest.mark.parametrize("material, scene, tolerance", CASES)

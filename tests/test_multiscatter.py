@@ -6,7 +6,7 @@ import pytest
 from brdf_explorer.lib import slot
 from brdf_explorer.lib.common import PI, dot, normalize, vec
 from brdf_explorer.lib.random import Draws, pcg3d, random_states, seeded
-from brdf_explorer.lib.walk import depth_below, flight, meeting, passage
+from brdf_explorer.lib.walk import depth_below, flight, meets, passage
 from brdf_explorer.measure.grid import direction
 from brdf_explorer.measure.laws import Shader
 from brdf_explorer.measure.noise import Running, mean_f
@@ -38,7 +38,7 @@ def dense(model, wo, wi):
 
 
 def energy(gpu, model, wo, error, seed=1, n=100_000):
-    """The share of the energy that arrives along wo which is scattered: a Mean, of as many samples as make its error at most that."""
+    """The share of the energy along wo that is scattered: a Mean, of as many samples as make its error at most that."""
     rng, running = np.random.default_rng(seed), Running()
     while running.count < 2 * n or np.any(running.mean().error > error):
         wi, weight = gpu.sample_f(model, wo, rng.integers(0, 2**24, (n, 2)) * 2.0**-24)
@@ -129,7 +129,7 @@ def test_passage_is_the_mean_over_flights(up):
         met = ends >= 0
         known = np.mean(np.exp(-np.where(met, ends, 0.0) * hidden / wi[2]) * met) / wi[2]
         assert passage(depth, w, area, wi, hidden) == pytest.approx(known, rel=1e-3)
-        assert meeting(depth, w, area) == pytest.approx(np.mean(met), abs=1 / n)
+        assert meets(depth, w, area) == pytest.approx(np.mean(met), abs=1 / n)
         np.testing.assert_allclose(np.exp(-depth_below(0.1 + depth)), -np.expm1(-0.1 - depth), rtol=1e-12)
 
 

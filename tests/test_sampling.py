@@ -83,10 +83,13 @@ def test_pdf_integrates_to_the_share_above_the_horizon(cls, choices):
     rng = np.random.default_rng(3)
     for model in shapes(cls, choices):
         for wo in viewers():
-            mass = integral(lambda o, i, m=model: m.pdf(o, i)[..., None], wo, model.slopes())
-            assert mass.error[0] < 1e-8 and mass.value[0] < 1 + 1e-9
-            assert bins(model, wo).sum() == pytest.approx(mass.value[0], abs=5e-6)  # samples are off by 1000 times this
-            up = model.sample_f(wo, rng.random((10_000, 2)))[0][:, 2] > HORIZON
+            mass = integral(lambda o, i, m=model: m.pdf(o, i)[..., None], wo, model.slopes(), index=model.index())
+            # where facets refract on edge, pdf has a kink or ends by a step: more than 10 000 samples tell is enough
+            known, binned = (1e-3, 3e-3) if model.transmits else (1e-8, 5e-6)
+            assert mass.error[0] < known and mass.value[0] < 1 + 1e-9
+            assert bins(model, wo).sum() == pytest.approx(mass.value[0], abs=binned)
+            height = model.sample_f(wo, rng.random((10_000, 2)))[0][:, 2]
+            up = (np.abs(height) if model.transmits else height) > HORIZON
             p.append(binomtest(int(up.sum()), up.size, min(mass.value[0], 1.0)).pvalue)
     assert -np.expm1(len(p) * np.log1p(-min(min(p), 1 - 1e-16))) > LEVEL
 
@@ -125,11 +128,12 @@ def test_weight_is_f_cos_over_pdf(cls, choices):
             with seeded(1):
                 wi, weight = model.sample_f(wo, u)
             pdf = model.pdf(wo, wi)
-            known = (pdf > 1e-200) & (wi[:, 2] > 1e-6)
+            height = np.abs(wi[:, 2]) if cls.transmits else wi[:, 2]
+            known = (pdf > 1e-200) & (height > 1e-6)
             with seeded(1):
-                expected = model.f(wo, wi)[known] * wi[known, 2:] / pdf[known, None]
+                expected = model.f(wo, wi)[known] * height[known, None] / pdf[known, None]
             np.testing.assert_allclose(weight[known], expected, rtol=1e-11, atol=1e-290)  # below, float64 runs out
-            assert np.all(weight[wi[:, 2] <= HORIZON] == 0)
+            assert np.all(weight[height <= HORIZON] == 0)
 
 
 VISIBLE = [("ggx", "visible"), ("ggx", "caps"), ("ggx", "bounded"), ("beckmann", "visible")]

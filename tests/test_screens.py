@@ -43,12 +43,15 @@ SCREENS = {
     "sphere-studio": ("sphere", state("chrome", "studio").with_view("sphere", samples=64)),
     "sphere-sky": ("sphere", state("brushed_aluminium", "sky").with_view("sphere", samples=64)),
     "sphere-furnace": ("sphere", state("white_microfacets", "white_furnace").with_view("sphere", samples=64)),
+    "sphere-glass": ("sphere", state("glass", "studio").with_view("sphere", samples=32)),
     "lobe-light": ("lobe", state("gold")),
+    "lobe-glass": ("lobe", at(state("frosted_glass"), theta_o=55.0).with_view("lobe", radius="log")),
     "lobe-dark-log": ("lobe", state("copper", theme="dark").with_view("lobe", radius="log", quantity="f_cos")),
     "lobe-sharp": ("lobe", State((NARROW,)).with_view("lobe", zoom=2.0)),
     "lobe-anisotropic": ("lobe", at(BRUSHED, theta_o=65.0, phi_o=30.0).with_view("lobe", azimuth=20.0, elevation=50.0)),
     "compare-light": ("compare", replace(state("gold"), materials=COMPARED)),
     "factors-light": ("factors", state("gold")),
+    "factors-glass": ("factors", at(state("frosted_glass"), theta_o=55.0)),
     "factors-dark": ("factors", at(state("chrome", theme="dark"), theta_o=70.0).with_view("factors", axis="linear")),
     "hemisphere-light": ("hemisphere", state("gold")),
     "hemisphere-dark": (
@@ -57,6 +60,7 @@ SCREENS = {
             "hemisphere", quantity="D_visible"
         ),
     ),
+    "hemisphere-glass": ("hemisphere", at(state("frosted_glass", theme="dark"), theta_o=55.0)),
     "hemisphere-sharp": ("hemisphere", at(State((SHARP,)), theta_o=60.0).with_view("hemisphere", quantity="f")),
     "sampling-light": ("sampling", state("gold").with_view("sampling", show="error", samples=256)),
     "sampling-facets": (
@@ -74,6 +78,7 @@ SCREENS = {
         "polar",
         replace(state("gold", theme="dark").with_view("polar", radius="log"), materials=COMPARED),
     ),
+    "polar-glass": ("polar", at(state("frosted_glass"), theta_o=55.0).with_view("polar", radius="log")),
     "polar-grazing": ("polar", at(state("gold"), theta_o=80.0).with_view("polar", quantity="f_cos")),
     "polar-sharp": ("polar", State((SHARP,)).with_view("polar", radius="log", decades=8)),
     "microsurface-light": (

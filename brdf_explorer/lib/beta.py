@@ -1,7 +1,7 @@
 """The Beta function B(1 + x, 1 + y) = Gamma(1 + x) Gamma(1 + y) / Gamma(2 + x + y), x and y >= 0, without logarithms of Gamma.
 
 The whole part of the smaller argument goes by the recurrence B(1 + x, 1 + y) = y / (1 + x + y) B(1 + x, y); the rest by the
-quotient `rise`. Relative error 2e-14 for x, y in [0, 1e6].
+quotient `rise`. Relative error 4e-14 for x, y in [0, 1e6].
 """
 
 import numpy as np

@@ -1,6 +1,7 @@
 """Slot masking: independent on both sides, Walter et al. 2007, Eq. 23, as in Mitsuba.
 
-Too dark in reflection, too bright in transmission.
+Too bright in transmission, by up to 0.26 of the light (GGX, alpha = 1, index 1.5, 85 degrees), and too dark in reflection, by up
+to 0.12 (the same at 1 / 1.5).
 """
 
 

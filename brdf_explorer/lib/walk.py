@@ -25,7 +25,7 @@ def flight(depth, w, area, u):
     return depth + log_precise(1 - split(u)[0]) * split(w)[2] / area
 
 
-def meeting(depth, w, area):
+def meets(depth, w, area):
     """Probability that a ray w that begins at `depth` meets a facet."""
     z = split(w)[2]
     rise = np.where(z > 0, z, 1.0)

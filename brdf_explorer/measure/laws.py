@@ -74,6 +74,10 @@ class Shader:
     gpu: object
     model: object
 
+    @property
+    def stochastic(self):
+        return self.model.stochastic
+
     def f(self, wo, wi):
         return self.gpu.f(self.model, wo, wi)
 
@@ -103,9 +107,10 @@ def reciprocity(model, rng, n=4000):
         means = [
             np.array(mean_f(model, a, b, walks)) * np.where(a[:, 2:] < 0, dense, 1.0) for a, b in ((wo, wi), (wi, wo))
         ]
-        # a difference of what rounding leaves of two equal numbers is none
-        spread = np.hypot(means[0][1], means[1][1]) + 1e-12 * means[0][0]
-        error = quotient(np.abs(means[0][0] - means[1][0]), spread)
+        (there, back), errors = np.array(means)[:, 0], np.array(means)[:, 1]
+        # a difference of what rounding leaves of two equal numbers is none, and of what is rare all or nothing is found
+        known = there + back > 1e-6 * np.max(there + back)
+        error = np.where(known, quotient(np.abs(there - back), np.hypot(*errors) + 1e-12 * there), 0.0)
         note = f"sigma, of the means of {walks} estimates, largest {_where(wo, wi, error)}"
         return Law("reciprocity", float(error.max()), 6.0, note)
     wo, wi, u = adversarial(rng, n, model.transmits)
@@ -134,7 +139,7 @@ def twins(model, gpu, rng, n=8192):
 
     Of values from 1e-20 of the largest on: further out in a Gaussian tail, exp(-x) multiplies the rounding of wo + wi by x > 46,
     and float32's range ends. Of a model that transmits less what half a digit of wo changes: where a facet is seen on edge f
-    goes to 0 as the square of its cosine, a difference. Walks of a stochastic one are by the same random numbers, and 99 % keep it:
+    goes to 0 as the square of its cosine, a difference. Walks of a stochastic one are by equal random numbers, and 99 % keep it:
     the rest part where rounding decides whether a ray leaves.
     """
     if model.stochastic:

@@ -19,8 +19,10 @@ import numpy as np
 
 from ..glsl import Signature, assemble, filled, functions, of_model, params_glsl, read
 from ..lib import slot
-from ..lib.common import HORIZON, TWO_PI, length, mirror, normalize, quotient, vec
+from ..lib.common import HORIZON, TWO_PI, dot, length, mirror, normalize, quotient, vec
+from ..lib.fresnel import eta2_cos2_t
 from ..lib.microfacet import cos_facet
+from ..lib.refraction import refracted
 from ..model import Choice, Param, declared
 from .albedo import quadrature
 
@@ -40,8 +42,9 @@ NODES = 24
 STEPS = (1, -1, 10, -10)
 """Changes of an argument that its condition is taken from, in UNITs. Ten of them see a kink next to it, as at total reflection,
 where a formula that rounds more than once may end on the other side."""
-PARTS = {"pdf_wi", "weight_wi", "flight"}
-"""Functions that are no rows: all of pdf and sample_f but for what has a row; and a depth, which is below 0 where a ray leaves."""
+PARTS = {"pdf_wi", "weight_wi", "refracted", "upward", "apart_from_one", "third", "flight"}
+"""Functions that are no rows: all of pdf and sample_f but for what has a row, or round nothing; and a depth, below 0 where a ray
+leaves."""
 COLORS = ("f", "F", "sample_f", "diffuse_f")
 """Functions whose components are compared each; other vectors are directions, compared relative to their length."""
 
@@ -122,7 +125,7 @@ def reflected(slope, share=1.0):
 
 
 def near(signs, off):
-    """Directions next to wo, or a ray w, with the signs of its components changed, turned by `off`; opposite ones at any height."""
+    """Directions next to wo, or a ray w, with the signs of its components changed, turned by `off`; opposite at any height."""
 
     def draw(u, size, drawn):
         w = drawn.get("wo", drawn.get("w")) * signs
@@ -165,6 +168,29 @@ def alike(draw):
     )
 
 
+def through(slope):
+    """Directions below the surface that facets of a drawn slope refract wo to; where there is none, anywhere below."""
+
+    def draw(u, size, drawn):
+        z, phi = 0.05 + 0.95 * u[:, 0], TWO_PI * u[:, 1]
+        r = np.sqrt((1 - z) * (1 + z))
+        anywhere = vec(r * np.cos(phi), r * np.sin(phi), -z)
+        wm, eta = normals(slope)(u, 3, drawn), drawn["eta"]
+        w = refracted(drawn["wo"], wm, eta)
+        c = dot(drawn["wo"], wm)
+        passes = (c > 1e-3) & (eta2_cos2_t(c, eta) > 0) & (w[:, 2] < -1e-9)
+        return np.where(passes[:, None], w, anywhere)
+
+    return draw
+
+
+def sum_of_refraction(u, size, drawn):
+    """The length of wo + eta wi, from straight to nearly grazing incidence."""
+    eta = drawn["eta"][:, None]
+    least, most = np.abs(eta - 1), 0.999 * np.sqrt(np.abs(eta - 1) * (eta + 1))
+    return least * (most / least) ** u[:, :size]
+
+
 def uniforms(draw):
     """Random numbers of 24 bits, as lib/random.glsl makes them, below 1."""
     return lambda u, size, drawn: np.minimum(np.round(draw(u, size, drawn) / UNIT) * UNIT, 1 - UNIT)
@@ -195,6 +221,10 @@ ORDINARY = {
     "depth": decades(1e-2, 10.0),
     "area": linear(0.05, 1.0),
     "hidden": decades(1e-3, 1.0),
+    "wt": through(decades(1e-2, 4.0)),
+    "cos_o": linear(0.05, 1.0),
+    "cos_t": linear(0.05, 1.0),
+    "L": sum_of_refraction,
 }
 """Where nothing special happens. A parameter of a model that is not here is drawn from its range."""
 
@@ -207,6 +237,7 @@ class Regime:
     draws    how some arguments are drawn there; others are ordinary
     needs    arguments that a function must have to be concerned; else one of `draws` is enough
     half     values are stored as float16
+    below    of functions of a model that transmits, whose light then comes from below
     """
 
     name: str
@@ -215,9 +246,12 @@ class Regime:
     draws: dict
     needs: tuple[str, ...] = ()
     half: bool = False
+    below: bool = False
 
     def concerns(self, subject):
         names = subject.arguments
+        if self.below and not subject.model.transmits:
+            return False
         if self.half and not subject.is_model:
             return False
         return all(n in names for n in self.needs) and any(n in names for n in self.draws)
@@ -332,6 +366,26 @@ REGIMES = {
             ("k",),
         ),
         Regime(
+            "through",
+            ("through", "it"),
+            "light from below the surface, refracted by facets of all slopes, any index",
+            {"eta": decades(0.3, 4.0), "wi": through(decades(1e-3, 4.0)), "wt": through(decades(1e-3, 4.0))},
+            ("eta",),
+            below=True,
+        ),
+        Regime(
+            "straight",
+            ("through,", "η to 1"),
+            "light from below the surface, nearly straight through: index within 1e-1 down to 1e-4 of 1",
+            {
+                "eta": about(1.0, decades(1e-4, 0.1)),
+                "wi": through(decades(1e-3, 4.0)),
+                "wt": through(decades(1e-3, 4.0)),
+            },
+            ("eta",),
+            below=True,
+        ),
+        Regime(
             "tails",
             ("pdf", "to 0"),
             "normals far out in the tail of D, and random numbers next to 0 and 1",
@@ -352,7 +406,7 @@ REGIMES = {
         ),
     )
 }
-FIRST = ("alpha", "wo", "w", "wm", "c", "wi")
+FIRST = ("alpha", "wo", "w", "wm", "c", "wi", "eta")
 """Arguments that others are drawn by, in this order."""
 
 
@@ -403,7 +457,8 @@ class Subject:
     def draw(self, regime, u):
         """Arguments {name: (n,) or (n, components)} that float32 holds, at points u (n, arguments, 4) of the cube."""
         drawn = {}
-        order = sorted(range(len(self.arguments)), key=lambda i: _order(self.arguments[i]))
+        first = ("alpha", "wo", "eta") if regime.below else FIRST
+        order = sorted(range(len(self.arguments)), key=lambda i: _order(self.arguments[i], first))
         for i in order:
             name, size = self.arguments[i], self.sizes[i]
             how = regime.draws.get(name) or ORDINARY.get(name) or self._range(name)
@@ -451,8 +506,8 @@ class Subject:
             return np.where(total == 0, 0.0, total / np.maximum(size, TINY)) / UNIT
 
 
-def _order(name):
-    return FIRST.index(name) if name in FIRST else len(FIRST)
+def _order(name, first):
+    return first.index(name) if name in first else len(first)
 
 
 def subjects(model):
@@ -524,7 +579,7 @@ def _of_model(cls, model, function):
         if function.name != "sample_f":
             return getattr(rows, function.name)(**arguments)
         wo, wi = arguments["wo"], arguments["wi"]
-        return quotient(rows.f(wo, wi) * wi[:, 2:], rows.pdf(wo, wi)[:, None])
+        return quotient(rows.f(wo, wi) * np.abs(wi[:, 2:]), rows.pdf(wo, wi)[:, None])
 
     label = f"{function.name} {cls.name()}"
     return Subject(function.name, label, signature, kinds, source, twin, cls, {}, True)
@@ -629,7 +684,7 @@ def evaluated(gpu, subject, regime, u, form, arguments):
     lost = np.zeros(len(value), dtype=bool)
     if sampled is not None:  # the weight is compared in the direction that was drawn
         lost = ~np.all(np.isfinite(sampled), axis=1)
-        counts = ~lost & (sampled[:, 2] > HORIZON)
+        counts = ~lost & ((np.abs(sampled[:, 2]) if subject.model.transmits else sampled[:, 2]) > HORIZON)
         known.pop("u")
         known["wi"] = np.where(counts[:, None], sampled, np.float32([0, 0, 1])).astype(float)
     exact = subject.exact(known)
@@ -649,7 +704,7 @@ def evaluated(gpu, subject, regime, u, form, arguments):
     floor = regime.tiny
     for name in ("wo", "wi", "w"):  # a factor leaves the range before its quotient by a cosine does
         if name in known and not regime.half:
-            floor = floor / known[name][:, 2]
+            floor = floor / np.abs(known[name][:, 2])
     floor = np.reshape(floor, (-1, 1))
     with np.errstate(all="ignore"):
         off, size = np.abs(value - exact), np.abs(exact)
@@ -763,9 +818,11 @@ def reciprocity(gpu, subject, form, batch):
     arguments = {name: batch.arguments[SWAPPED.get(name, name)] for name in batch.arguments}
     there = batch.value
     back = subject.single(gpu, arguments, form)[0].astype(float)
+    if subject.name == "f" and subject.model.transmits:  # radiance dims by n^2 as it leaves a medium
+        back = back * np.where(batch.arguments["wi"][:, 2] < 0, batch.arguments["eta"] ** -2.0, 1.0)[:, None]
     with np.errstate(all="ignore"):
         size = np.maximum(np.abs(there), np.abs(back))
-        floor = TINY / (batch.arguments["wo"][:, 2] * batch.arguments["wi"][:, 2])[:, None]
+        floor = TINY / np.abs(batch.arguments["wo"][:, 2] * batch.arguments["wi"][:, 2])[:, None]
         change = np.maximum(np.abs(there - back) - floor, 0) / np.maximum(size, floor)
         change = np.where(np.isfinite(change), change, 0.0)
     asked = np.flatnonzero(np.max(change, axis=1) > LIMIT)

@@ -106,6 +106,11 @@ class Dielectric(Model):
 
     def passing(self, wo, wi):
         """Of facets that refract wi to wo: T D cos cos / L^2, the same with wo and wi exchanged."""
+        D, T, spread = self._refracting(wo, wi)
+        return T * spread * D
+
+    def _refracting(self, wo, wi):
+        """Of facets that refract wi to wo: D, 1 - F, and cos cos / L^2; all 0 where there are none."""
         eta, up = apart_from_one(self.eta), wo[..., 2:] > 0
         sum = sum_refracted(np.where(up, wo, wi), np.where(up, wi, wo), eta)
         wm = np.where(np.asarray(eta > 1)[..., None], -sum, sum)
@@ -115,14 +120,29 @@ class Dielectric(Model):
         c = cos_refracted(L, eta)
         seen &= np.all(c > 0, axis=-1)
         above, below = split(np.where(seen[..., None], c, 1.0))
-        found = T_dielectric(above, below, eta) * (above / L) * (below / L)
-        return np.where(seen, found * slot("ndf", self.ndf).D(wm, np.array(self.alpha)), 0.0)
+        found = (
+            slot("ndf", self.ndf).D(wm, np.array(self.alpha)),
+            T_dielectric(above, below, eta),
+            above / L * (below / L),
+        )
+        return tuple(np.where(seen, part, 0.0) for part in found)
+
+    def factors(self, wo, wi):
+        """D, G, F or 1 - F, and the Jacobian, whose product is f, off the horizon: name -> (...), of F (..., 3)."""
+        wo, wi = np.broadcast_arrays(np.asarray(wo, dtype=float), np.asarray(wi, dtype=float))
+        o, i, crossing = upward(wo), upward(wi), crosses(wo, wi)
+        D, T, spread = self._refracting(wo, wi)
+        n = np.where(wo[..., 2] > 0, 1.0, self.eta_seen(wi))
+        F = np.where(crossing, T, F_dielectric(cos_facet(o, i), self.eta_seen(wo)))
+        D = np.where(crossing, D, slot("ndf", self.ndf).D(o + i, np.array(self.alpha)))
+        jacobian = np.where(crossing, n * n * spread, 0.25) / (o[..., 2] * i[..., 2])
+        return {"D": D, "G": self.G2(wo, wi), "F": F[..., None] * np.ones(3), "jacobian": jacobian}
 
     def G2(self, wo, wi):
         """Share of the facets that both directions see, of those that reflect or, for directions on both sides, transmit."""
         Lambda, masking = slot("smith", self.ndf, "exact").Lambda, slot("masking", self.masking)
-        both = [Lambda(upward(w), np.array(self.alpha)) for w in (wo, wi)]
-        found, at = masking.G2_reflected(*both), crosses(wo, wi)
+        both = [np.asarray(Lambda(upward(w), np.array(self.alpha))) for w in (wo, wi)]
+        found, at = np.array(masking.G2_reflected(*both)), crosses(wo, wi)
         found[at] = masking.G2_transmitted(*(Lambda[at] for Lambda in both))
         return found
 

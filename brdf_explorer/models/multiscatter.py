@@ -1,7 +1,7 @@
 """Facets that light meets many times: Heitz, Hanika, d'Eon and Dachsbacher 2016, "Multiple-Scattering Microfacet BSDFs with the
 Smith Model"."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 
 import numpy as np
@@ -57,6 +57,15 @@ class Multiscatter(Model):
 
     def slopes(self):
         return (1.0, 1.0) if self.facets == "diffuse" else self.alpha
+
+    def parts(self):
+        """The orders of scattering."""
+        last, found = self.last_order(), {}
+        for name, low, high in (("order 1", 1, 1), ("order 2", 2, 2), ("orders 3 and up", 3, MOST)):
+            low, high = max(low, self.first), min(high, last)
+            if low <= high:
+                found[name] = replace(self, first=low, orders=high - low + 1)
+        return found
 
     def f(self, wo, wi):
         wo, wi = np.broadcast_arrays(np.asarray(wo, dtype=float), np.asarray(wi, dtype=float))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..lib.common import HORIZON, INV_PI, dot, mirror, normalize, split
-from ..lib.walk import flight, meeting, passage
+from ..lib.walk import flight, meets, passage
 from ..lib.warp import cosine_hemisphere
 from .multiscatter import CLEAR
 
@@ -30,7 +30,7 @@ def walk(material, wo, wi, draws):
         row, w, depth, weight, area = row[met], w[met], depth[met], weight[met], area[met]
         wm = material.sample_wm(-w, u[met, 1:])
         weight = weight * np.array(material.albedo)
-        share = passage(depth, w, area, wi[row], hidden[row]) / meeting(depth, w, area)
+        share = passage(depth, w, area, wi[row], hidden[row]) / meets(depth, w, area)
         if order >= material.first:
             total[row] += weight * (INV_PI * np.maximum(dot(wi[row], wm), 0.0) * share)[:, None]
         depth = next[met]

@@ -13,7 +13,7 @@ from .diagram import number
 from .drawing import Drawing, Drawn
 from .picture import Curves
 from .polar import NODES
-from .table import table
+from .table import tables
 
 SHOWN = ("on", "off")
 FACTORS = {  # name -> words of the legend, and what they are where there is little room
@@ -50,10 +50,13 @@ class Factors(Drawn):
 
     @np.errstate(under="ignore")  # in the tails of a density
     def curves(self, gpu, state):
-        """theta (n,) in radians, positive on the viewer's side, and name -> values (n,); f by the shader, the rest float64."""
-        t = table(gpu, alone(state.model), state.directions, rays=2, nodes=NODES)
-        theta, wi, f = t.plane()
-        values = {name: np.asarray(v) for name, v in state.model.factors(t.wo, wi).items()}
+        """theta (n,) in radians, positive on the viewer's side, and name -> values (n,); f by the shader, the rest float64.
+
+        Of a material that transmits theta goes on below the surface, beyond -90 degrees.
+        """
+        found = tables(gpu, alone(state.model), state.directions, rays=2, nodes=NODES)[::-1]
+        theta, wi, f = (np.concatenate(parts) for parts in zip(*(t.plane() for t in found), strict=True))
+        values = {name: np.asarray(v) for name, v in state.model.factors(found[0].wo, wi).items()}
         return theta, values | {"F": luminance(values["F"]), "product": luminance(f)}
 
     def table_of(self, gpu, state):
@@ -82,10 +85,13 @@ class Factors(Drawn):
         rows = -(-len(shown) // columns) + (1 if short else len(shown) % columns == 0)
         foot, head = 62 * scale, (28 + 18 * rows) * scale
         box = (52 * scale, foot, max(width - 18 * scale, 60 * scale), max(height - head, foot + 8 * scale))
-        x = Axis(-90.0, 90.0, "θi in the plane of incidence")
+        both = state.model.index() is not None
+        title = "θi in the plane of incidence"
+        title += "; below the surface F is 1 − F, the Jacobian that of refraction" * both
+        x = Axis(-270.0 if both else -90.0, 90.0, title)
         axes = Axes(draw, box, x, y)
-        angles = np.arange(-90, 91, 30 if box[2] - box[0] < 420 * scale else 15)
-        axes.frame(angles, [f"{abs(a)}°" for a in angles])
+        angles = np.arange(x.low, 91, (30 if box[2] - box[0] < 420 * scale else 15) * (3 if both else 1))
+        axes.frame(angles, [f"{min(abs(a), 360 - abs(a)):g}°" for a in angles])
         theta_o = state.directions.theta_o
         axes.line([theta_o, theta_o], [y.low, y.high], "accent", 1.2)
         dashes = np.linspace(y.share(y.low), y.share(y.high), 41) * (box[3] - box[1]) + box[1]

@@ -1,5 +1,5 @@
-// Slot masking: independent on both sides, Walter et al. 2007, Eq. 23, as in Mitsuba. Too dark in reflection, too bright in
-// transmission. Error: see models/dielectric.
+// Slot masking: independent on both sides, Walter et al. 2007, Eq. 23, as in Mitsuba. Too bright in transmission, by up to 0.26 of
+// the light (GGX, alpha = 1, index 1.5, 85 degrees), and too dark in reflection, by up to 0.12 (the same at 1 / 1.5).
 float G2_reflected(float Lambda_o, float Lambda_i) { return 1.0 / ((1.0 + Lambda_o) * (1.0 + Lambda_i)); }
 
 float G2_transmitted(float Lambda_o, float Lambda_i) { return 1.0 / ((1.0 + Lambda_o) * (1.0 + Lambda_i)); }

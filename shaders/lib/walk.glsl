@@ -15,7 +15,7 @@ float mean_exp(float x) {
 float flight(float depth, vec3 w, float area, vec2 u) { return depth + log_precise(1.0 - u.x) * w.z / area; }
 
 // Probability that a ray w that begins at `depth` meets a facet.
-float meeting(float depth, vec3 w, float area) {
+float meets(float depth, vec3 w, float area) {
   if (w.z <= 0.0) return 1.0;
   float x = depth * area / w.z;
   return x < 1.0 ? x * mean_exp(x) : 1.0 - exp_precise(-x);

@@ -7,20 +7,27 @@
 
 bool counts(vec3 w) { return abs(w.z) > HORIZON; }
 
-// The index of the other side over that of w.
-float eta_seen(vec3 w) {
+// The index of the other side over that of a ray above the surface, or below it.
+float eta_seen(bool above) {
   float eta = apart_from_one(material.eta_below);
-  return w.z > 0.0 ? eta : 1.0 / eta;
+  return above ? eta : 1.0 / eta;
+}
+
+// n^2 of the side.
+float dense(bool above) {
+  float eta = apart_from_one(material.eta_below);
+  return above ? 1.0 : eta * eta;
 }
 
 // w as seen with wo above the surface.
 vec3 turned(vec3 w, vec3 wo) { return vec3(w.xy, wo.z > 0.0 ? w.z : -w.z); }
 
-// Of facets that refract w, on their upper side, to wt, on their lower one: T D cos cos / L^2. Walter et al. 2007, Eq. 21. Over
-// w's projected area it is the density of the way back, and times eta^2 that of this way.
-float passing(vec3 w, vec3 wt, float eta) {
-  vec3 sum = sum_refracted(w, wt, eta);
-  vec3 wm = eta > 1.0 ? -sum : sum;
+// Of facets that refract w, on their side `above` or not, to wt: T D cos cos / L^2, the same for the way back. Over w's projected
+// area and times n^2 of the other side it is a density. Walter et al. 2007, Eq. 21.
+float passing(vec3 w, vec3 wt, bool above) {
+  float eta = apart_from_one(material.eta_below);
+  vec3 sum = above ? sum_refracted(w, wt, eta) : sum_refracted(wt, w, eta);
+  vec3 wm = (eta > 1.0) == above ? -sum : sum;
   float L = length(sum);
   if (wm.z <= 0.0 || L <= 0.0) return 0.0;
   vec2 c = cos_refracted(L, eta);
@@ -28,54 +35,57 @@ float passing(vec3 w, vec3 wt, float eta) {
   return T_dielectric(c.x, c.y, eta) * (c.x / L) * (c.y / L) * D(wm, material.alpha);
 }
 
-float mirroring(vec3 w, vec3 wi, float eta) {
-  return 0.25 * F_dielectric(cos_facet(w, wi), eta) * D(w + wi, material.alpha);
+float mirroring(vec3 w, vec3 wi, bool above) {
+  return 0.25 * F_dielectric(cos_facet(w, wi), eta_seen(above)) * D(w + wi, material.alpha);
 }
 
 // As of mirrors, with what is refracted by the depth that was drawn. It begins at either end, as there.
 vec3 walk(vec3 wo, vec3 wi) {
   bool swap = drawn().x < 0.5;
   vec3 from = swap ? wi : wo;
-  vec3 to = swap ? wo : wi;
-  float eta = eta_seen(from);
-  // light goes from the viewer's side: over n^2 of its own
-  float scale = wo.z * wi.z < 0.0 ? (swap ? 1.0 : 1.0 / (eta * eta)) : 1.0;
-  to = turned(to, from);
+  bool above = from.z > 0.0;
+  vec3 to = turned(swap ? wo : wi, from);
   vec3 w = -turned(from, from);
-  float hidden = projected_area(vec3(to.xy, -abs(to.z)), material.alpha);
-  float back = abs(to.z) + hidden;
+  float height = abs(to.z);
+  float hidden = projected_area(vec3(to.xy, -height), material.alpha);
   float depth = 0.0, outer = 0.0, sum = 0.0;
   int last = last_order();
   for (int order = 1; order <= last; ++order) {
     float area = projected_area(-w, material.alpha);
     if (area <= CLEAR * w.z) break;
     float next = flight(depth, w, area, drawn().xy);
-    bool stays = to.z > 0.0;
-    float density = order < material.first || (!stays && next < 0.0) ? 0.0 : stays ? mirroring(-w, to, eta) : passing(-w, to, eta);
+    float density = 0.0, share = 0.0;
+    if (order >= material.first && to.z > 0.0) {
+      density = mirroring(-w, to, above);
+      share = passage(depth, w, area, to, hidden);
+    } else if (order >= material.first && next >= 0.0) {
+      density = passing(-w, to, above);
+      share = exp_precise(-depth_below(next) * hidden / height) / height * dense(!above);
+    }
     if (density > 0.0) {
-      float share = stays ? passage(depth, w, area, to, hidden) * density / area
-                          : exp_precise(-depth_below(next) * hidden / abs(to.z)) / abs(to.z) * density * eta * eta / area;
-      if (order > 1) share *= 2.0 * outer / (outer + density / back);
+      share *= density / area;
+      if (order > 1) share *= 2.0 * outer / (outer + density * (to.z > 0.0 ? 1.0 : dense(above)) / (height + hidden));
       sum += share;
     }
     if (order == last || next < 0.0) break;
     vec3 u = drawn();
     vec3 wm = sample_wm(-w, u.yz, material.alpha);
-    if (u.x < F_dielectric(clamp(dot(-w, wm), 0.0, 1.0), eta)) {
+    if (u.x < F_dielectric(clamp(dot(-w, wm), 0.0, 1.0), eta_seen(above))) {
       vec3 reflected = mirror(-w, wm);
-      if (order == 1) outer = mirroring(-w, reflected, eta) / area;
+      if (order == 1) outer = mirroring(-w, reflected, above) / area;
       w = reflected;
       depth = next;
     } else {
-      vec3 wt = refracted(-w, wm, eta);
-      if (order == 1) outer = passing(-w, wt, eta) * eta * eta / area;
+      vec3 wt = refracted(-w, wm, eta_seen(above));
+      if (order == 1) outer = passing(-w, wt, above) * dense(!above) / area;
       w = -wt;
       depth = depth_below(next);
       to = -to;
-      eta = 1.0 / eta;
+      above = !above;
     }
   }
-  return vec3(scale * sum);
+  // what arrives at wi of light from wo is f(wi, wo): f(wo, wi) has n^2 of the viewer's side and not of the light's
+  return vec3(sum * (swap ? 1.0 : dense(wo.z > 0.0) / dense(wi.z > 0.0)));
 }
 
 // Chance of the cosine lobes, one on each side, for light that met more than one facet; in 32nds, as of mirrors.
@@ -84,10 +94,9 @@ float broad() { return ceil(16.0 * max(material.alpha.x, material.alpha.y)) / 32
 float pdf_lobes(vec3 wo, vec3 wi) {
   vec3 o = turned(wo, wo);
   vec3 i = turned(wi, wo);
-  float eta = eta_seen(wo);
-  float area = projected_area(o, material.alpha);
-  float one = (i.z > 0.0 ? mirroring(o, i, eta) : eta * eta * passing(o, i, eta)) / area;
-  return mix(one, 0.5 * INV_PI * abs(wi.z), broad());
+  bool above = wo.z > 0.0;
+  float one = i.z > 0.0 ? mirroring(o, i, above) : dense(!above) * passing(o, i, above);
+  return mix(one / projected_area(o, material.alpha), 0.5 * INV_PI * abs(wi.z), broad());
 }
 
 // A direction that ends on the wrong side of the surface is lost: it is put on the horizon.
@@ -99,7 +108,7 @@ vec3 sample_lobes(vec3 wo, vec2 u) {
     return vec3(w.xy, side < 0.5 ? w.z : -w.z);
   }
   vec3 o = turned(wo, wo);
-  float eta = eta_seen(wo);
+  float eta = eta_seen(wo.z > 0.0);
   vec3 wm = sample_wm(o, vec2((u.x - share) / (1.0 - share), u.y), material.alpha);
   bool reflects = side < F_dielectric(clamp(dot(o, wm), 0.0, 1.0), eta);
   vec3 w = reflects ? mirror(o, wm) : refracted(o, wm, eta);

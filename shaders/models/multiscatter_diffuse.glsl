@@ -17,7 +17,7 @@ vec3 walk(vec3 wo, vec3 wi) {
     vec3 wm = sample_wm(-w, u.yz, material.alpha);
     weight *= material.albedo;
     // the mean over the flights that meet a facet
-    float share = passage(depth, w, area, wi, hidden) / meeting(depth, w, area);
+    float share = passage(depth, w, area, wi, hidden) / meets(depth, w, area);
     if (order >= material.first) sum += weight * (INV_PI * max(dot(wi, wm), 0.0) * share);
     depth = next;
     w = mirror(cosine_hemisphere(drawn().xy), normalize(wm + vec3(0.0, 0.0, 1.0)));  // which turns +z to wm

@@ -5,9 +5,10 @@
 uniform sampler2D directions;
 uniform vec3 wo;
 uniform uint pass;
+uniform int walks;  // of a stochastic f, whose mean is taken
 out vec4 value;
 
 void main() {
   seed_random(pass);
-  value = vec4(f(wo, texelFetch(directions, ivec2(gl_FragCoord.xy), 0).xyz), 0.0);
+  value = vec4(mean_f(wo, texelFetch(directions, ivec2(gl_FragCoord.xy), 0).xyz, walks), 0.0);
 }

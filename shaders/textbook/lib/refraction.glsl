@@ -8,6 +8,11 @@ vec3 upward(vec3 w) { return vec3(w.xy, abs(w.z)); }
 
 vec3 sum_refracted(vec3 wo, vec3 wt, float eta) { return wo + eta * wt; }
 
+vec2 cos_refracted(float L, float eta) {
+  float e = eta * eta - 1.0;
+  return vec2(abs(e - L * L), abs(e + L * L) / eta) / (2.0 * L);
+}
+
 float T_dielectric(float cos_o, float cos_t, float eta) { return 1.0 - F_dielectric(cos_o, eta); }
 
 vec3 refracted(vec3 w, vec3 wm, float eta) {
