@@ -3,8 +3,8 @@
 Fits by shaders/lib/derive_lost.py in lost_{ndf}_{shadowing}.py, in s = cos / (cos + alpha) and alpha; this is what these share.
 
 Anisotropic facets are taken for isotropic ones of the root mean square of alpha, seen from where these have the same Lambda:
-w.xy stretched by alpha. That errs by up to 0.05 of the light for GGX and 0.10 for Beckmann, at any ratio of the two alphas; for GGX
-with separable shadowing by up to 0.09, and by 0.21 with directional where one alpha is 100 times the other.
+w.xy stretched by alpha. That errs by up to 0.05 of the light for GGX and 0.10 for Beckmann, at any ratio of the two alphas; for
+GGX with separable shadowing by up to 0.09, and by 0.21 with directional where one alpha is 100 times the other.
 Of Beckmann with the rational smith it is the exact one's, which differs by up to 3e-3.
 """
 
