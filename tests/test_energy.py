@@ -132,10 +132,10 @@ def test_wide_samples_follow_their_density():
     """Cosines invert the integral of the density, log(1 + cos^2 / a^2) / log(1 + 1 / a^2)."""
     u = np.random.default_rng(2).random((1000, 2))
     for a in (1e-4, 0.03, 1.0):
-        wi = sample_wide(u, a)
+        wi = sample_wide(u, np.array([a, a]))
         np.testing.assert_allclose(np.log1p(wi[:, 2] ** 2 / a**2) / np.log1p(1 / a**2), u[:, 0], atol=1e-9)
         z = np.linspace(0.1, 0.9, 5)
-        slope = 2 * np.pi * pdf_wide(direction(np.arccos(z), 0.0), a)
+        slope = 2 * np.pi * pdf_wide(direction(np.arccos(z), 0.0), np.array([a, a]))
         np.testing.assert_allclose(slope, 2 * z / ((z * z + a * a) * np.log1p(1 / a**2)), rtol=1e-12)
 
 

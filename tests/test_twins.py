@@ -198,7 +198,6 @@ DRAWS = {
     "lost_i": either(ZERO, decades(1e-8, 0.7)),
     "lost_mean": decades(1e-8, 0.7),
     "F_mean": uniform(0, 1),
-    "a": decades(1e-4, 1),
     "f": uniform(0, 1),
     "color": decades(1e-4, 1e3),
     "linear": either(decades(1e-6, 1), uniform(0, 1)),

@@ -8,6 +8,7 @@ the second reflection keeps something of the lobe while alpha is small.
 import numpy as np
 
 from .common import PI, TWO_PI, split, vec
+from .lost import alpha_mean
 
 
 def F_multiple(F_mean, lost_mean):
@@ -30,15 +31,15 @@ def share_wide(F0, lost_o):
     return F * lost_o / (1 - lost_o + F * lost_o)
 
 
-def sample_wide(u, a):
-    """Directions (..., 3) with a density proportional to cos / (cos^2 + a^2), a being alpha_mean."""
-    x, y = split(u)
+def sample_wide(u, alpha):
+    """Directions (..., 3) with a density proportional to cos / (cos^2 + alpha_mean^2)."""
+    (x, y), a = split(u), alpha_mean(alpha)
     with np.errstate(under="ignore"):  # of a component of no length
         z2 = np.minimum(a * a * np.expm1(x * np.log1p(1 / (a * a))), 1.0)
         phi, r = TWO_PI * y, np.sqrt(1 - z2)
         return vec(r * np.cos(phi), r * np.sin(phi), np.sqrt(z2))
 
 
-def pdf_wide(wi, a):
-    z = split(wi)[2]
+def pdf_wide(w, alpha):
+    z, a = split(w)[2], alpha_mean(alpha)
     return z / (PI * (z * z + a * a) * np.log1p(1 / (a * a)))

@@ -5,7 +5,6 @@ import numpy as np
 from ..lib import slot
 from ..lib.common import mix, split, vec
 from ..lib.energy_kulla_conty import F_multiple, pdf_wide, sample_wide, share_wide, wide
-from ..lib.lost import alpha_mean
 
 
 def wide_f(material, wo, wi):
@@ -25,14 +24,14 @@ def energy_f(material, single, wo, wi):
 
 
 def energy_pdf(material, single, wo, wi):
-    return mix(single, pdf_wide(wi, alpha_mean(np.array(material.alpha))), wide_share(material, wo))
+    return mix(single, pdf_wide(wi, np.array(material.alpha)), wide_share(material, wo))
 
 
 def energy_wi(material, wo, u):
     s, (x, y) = wide_share(material, wo), split(u)
     own = x < s
     wi = np.empty(wo.shape)
-    wi[own] = sample_wide(vec(x[own] / s[own], y[own]), alpha_mean(np.array(material.alpha)))
+    wi[own] = sample_wide(vec(x[own] / s[own], y[own]), np.array(material.alpha))
     other = ~own
     wi[other] = material.single_wi(wo[other], vec((x[other] - s[other]) / (1 - s[other]), y[other]))
     return wi

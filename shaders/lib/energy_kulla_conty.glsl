@@ -3,6 +3,7 @@
 // the albedo is 1; reciprocal. Leaves out that the second reflection keeps something of the lobe while alpha is small.
 
 #include "lib/common.glsl"
+#include "lib/lost.glsl"
 #include "lib/transcendental.glsl"
 
 // What facets that each reflect F_mean return of the light that one reflection lost: of each further reflection E_mean leaves. Two at
@@ -20,14 +21,16 @@ float share_wide(vec3 F0, float lost_o) {
   return F * lost_o / (1.0 - lost_o + F * lost_o);
 }
 
-// Directions with a density proportional to cos / (cos^2 + a^2), a being alpha_mean, as what is lost falls for GGX: by the cosine alone
-// weights would grow as 1 / alpha^2.
-vec3 sample_wide(vec2 u, float a) {
+// Directions with a density proportional to cos / (cos^2 + alpha_mean^2), as what is lost falls for GGX: by the cosine alone weights
+// would grow as 1 / alpha^2.
+vec3 sample_wide(vec2 u, vec2 alpha) {
+  float a = alpha_mean(alpha);
   float z2 = min(a * a * expm1_precise(u.x * log_precise(1.0 + 1.0 / (a * a))), 1.0);
   float phi = TWO_PI * u.y, r = sqrt(1.0 - z2);
   return vec3(r * cos(phi), r * sin(phi), sqrt(z2));
 }
 
-float pdf_wide(vec3 wi, float a) {
-  return wi.z / (PI * (wi.z * wi.z + a * a) * log_precise(1.0 + 1.0 / (a * a)));
+float pdf_wide(vec3 w, vec2 alpha) {
+  float a = alpha_mean(alpha);
+  return w.z / (PI * (w.z * w.z + a * a) * log_precise(1.0 + 1.0 / (a * a)));
 }

@@ -1,7 +1,6 @@
 // Slot energy of microfacet: single scattering and a wide lobe; of the directions drawn the wide lobe has its share.
 #include "lib/energy_kulla_conty.glsl"
 #include "lib/fresnel_mean_{fresnel}.glsl"
-#include "lib/lost.glsl"
 #include "lib/lost_{ndf}_{shadowing}.glsl"
 
 vec3 wide_f(vec3 wo, vec3 wi) {
@@ -15,13 +14,13 @@ float wide_share(vec3 wo) { return share_wide(F(1.0, material.eta, material.k), 
 vec3 energy_f(vec3 single, vec3 wo, vec3 wi) { return single + wide_f(wo, wi); }
 
 float energy_pdf(float single, vec3 wo, vec3 wi) {
-  return mix(single, pdf_wide(wi, alpha_mean(material.alpha)), wide_share(wo));
+  return mix(single, pdf_wide(wi, material.alpha), wide_share(wo));
 }
 
 // u.x chooses the lobe, and what is left of it is as even as before.
 vec3 energy_wi(vec3 wo, vec2 u) {
   float s = wide_share(wo);
-  if (u.x < s) return sample_wide(vec2(u.x / s, u.y), alpha_mean(material.alpha));
+  if (u.x < s) return sample_wide(vec2(u.x / s, u.y), material.alpha);
   return sample_wi(wo, vec2((u.x - s) / (1.0 - s), u.y), material.alpha);
 }
 
