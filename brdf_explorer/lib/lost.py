@@ -39,10 +39,10 @@ def interpolated(table, x, y):
 
 
 def lost_by(table, power, w, alpha):
-    """The fit at w (..., 3) and alpha (..., 2): s^power (1 - s)^2 times a spline of s (1 + alpha) and alpha."""
+    """The fit at w (..., 3) and alpha (..., 2): s^power (1 - s)^2 times a spline of 1 - s (1 + alpha) and alpha."""
     a = alpha_mean(alpha)
     s, rest = split(parts(w, alpha))
-    return s**power * rest * rest * interpolated(table, s * (1 + a), a + 0 * s)
+    return s**power * rest * rest * interpolated(table, rest - a * s, a + 0 * s)
 
 
 def lost_mean_by(table, alpha):

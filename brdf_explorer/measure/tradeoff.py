@@ -282,8 +282,9 @@ def estimate_errors(gpu, ladder, state, metric):
         for name, model in models.items():
             evaluator, count = (Shader(gpu, model), WALKS) if model.stochastic else (model, int(n == 1))
             means = Values(0.0, 0.0, 0.0, 0.0)
-            for _ in range(count):
-                means = sum_of(means, values(evaluator, alpha, RAYS, index=index), 1 / count)
+            for k in range(count):
+                seed = 2 * (WALKS * n + k)  # of f there and back
+                means = sum_of(means, values(evaluator, alpha, RAYS, None, index, seed, 1), 1 / count)
                 yield found
             tables[name] += [means] * (count > 0)
         if n in (ROUGH, PARTS):

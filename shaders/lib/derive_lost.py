@@ -4,7 +4,8 @@ Isotropic facets lose s^n y^2 times a quadratic spline of s (1 + alpha) and alph
 is 1 where shadowing is correlated with masking, since of what a grazing viewer sees nothing is then shadowed. No coefficient is
 negative, so that nothing cancels, and along s each is at least LEAST times the one before, so that float32 keeps its digits
 where a lobe ends. They are found by least squares, reweighted until the largest error is least. The mean over directions is
-that of the fit, not of what it fits: so what is put back is what was taken.
+that of the fit, not of what it fits: so what is put back is what was taken. Rows are written from the normal to the horizon, by
+1 - s (1 + alpha), which loses no digits where a lobe ends.
 """
 
 import sys
@@ -138,7 +139,7 @@ const float LOST_MEAN[{mean_size}] = float[{mean_size}](
 float lost(vec3 w, vec2 alpha) {{
   float a = alpha_mean(alpha);
   vec2 s = parts(w, alpha);
-  float x = {rows:.1f} * (1.0 + a) * s.x, y = {columns:.1f} * a;
+  float x = {rows:.1f} * (s.y - a * s.x), y = {columns:.1f} * a;
   int i = clamp(int(x), 0, {last_row}), j = clamp(int(y), 0, {last_column}), k = {stride} * i + j;
   vec3 u = spline(x - float(i)), v = spline(y - float(j));
   float sum = u.x * dot(v, vec3(LOST[k], LOST[k + 1], LOST[k + 2]));
@@ -204,7 +205,7 @@ def text(ndf, shadowing, n, table, error):
     c, m = COLUMNS, MEAN_COLUMNS
     fields = {
         "about": ABOUT[ndf], "shadowing": shadowing, "error": error, "n": n, "factor": "s.x * " * n,
-        "lost": numbers(table), "mean": numbers(mean), "size": table.size, "mean_size": mean.size,
+        "lost": numbers(table[::-1]), "mean": numbers(mean), "size": table.size, "mean_size": mean.size,
         "all_rows": ROWS, "all_mean_rows": MEAN_ROWS,
         "rows": ROWS - 2, "columns": c - 2, "last_row": ROWS - 3, "last_column": c - 3,
         "stride": c, "stride1": c + 1, "stride2": c + 2, "twice": 2 * c, "twice1": 2 * c + 1, "twice2": 2 * c + 2,
