@@ -39,23 +39,26 @@ def test_disc_keeps_areas():
 
 @pytest.mark.parametrize("scale", ["linear", "log"])
 @pytest.mark.parametrize("quantity", QUANTITIES)
+@np.errstate(under="ignore")
 def test_map_shows_the_models_values(gpu, quantity, scale):
     """Colours of the shader's map are those of float64 values at the pixels' points nearest to the peak."""
-    state = State(directions=Directions(55.0, 25.0)).with_model(MICROFACET(alpha=(0.15, 0.4)))
     view, side = Hemisphere(quantity=quantity, scale=scale), 64
-    peak = view.peak(state.model, WO)
-    pixel = 2 / side
-    pixels = gpu.pixels(view.map(gpu, state, WO, peak, "test", (side, side), (0.0, 0.0), pixel))[::-1, :, :3] / 255.0
-    y, x = np.mgrid[:side, :side]
-    p = (np.stack([x, y], axis=-1) + 0.5 - side / 2) * pixel
-    r = np.linalg.norm(p, axis=-1)
-    p = p + np.clip(disc(peak.w) - p, -pixel / 2, pixel / 2)
-    inside = (r < 1 - pixel) & (np.linalg.norm(p, axis=-1) < 1)
-    share = view.values(state.model, WO, of_disc(p[inside])) / peak.value
-    np.testing.assert_allclose(pixels[inside], viridis(radius(share, scale, view.decades)), atol=1.5 / 255)
-    np.testing.assert_allclose(
-        pixels[r > 1 + pixel], np.broadcast_to(rgb(PALETTES["light"]["paper"]), (np.sum(r > 1 + pixel), 3))
-    )
+    for model in (MICROFACET(alpha=(0.15, 0.4)), MODELS["dielectric"](alpha=(0.15, 0.4), ndf="beckmann")):
+        state = State(directions=Directions(55.0, 25.0)).with_model(model)
+        for up in view.hemispheres(model):
+            peak = view.peak(model, WO, up)
+            pixel = 2 / side
+            shown = view.map(gpu, state, WO, up, peak, peak.value, "test", (side, side), (0.0, 0.0), pixel)
+            pixels = gpu.pixels(shown)[::-1, :, :3] / 255.0
+            y, x = np.mgrid[:side, :side]
+            p = (np.stack([x, y], axis=-1) + 0.5 - side / 2) * pixel
+            r = np.linalg.norm(p, axis=-1)
+            p = p + np.clip(disc(peak.w) - p, -pixel / 2, pixel / 2)
+            inside = (r < 1 - pixel) & (np.linalg.norm(p, axis=-1) < 1)
+            share = view.values(model, WO, of_disc(p[inside]) * [1.0, 1.0, up]) / peak.value
+            np.testing.assert_allclose(pixels[inside], viridis(radius(share, scale, view.decades)), atol=1.5 / 255)
+            outside = pixels[r > 1 + pixel]
+            np.testing.assert_allclose(outside, np.broadcast_to(rgb(PALETTES["light"]["paper"]), outside.shape))
 
 
 @pytest.mark.parametrize(
@@ -114,17 +117,10 @@ def test_sharp_lobes_do_not_vanish_between_pixels(gpu, quantity, alpha):
         wo = direction(np.radians(theta_o), 0.4)
         peak = view.peak(state.model, wo)
         assert peak.reach < NARROW
-        top = np.all(
-            np.abs(
-                gpu.pixels(view.map(gpu, state, wo, peak, "test", (100, 100), (0.0, 0.0), 0.02))[..., :3] / 255.0
-                - viridis(1.0)
-            )
-            < 0.02,
-            axis=-1,
-        )
-        assert 1 <= top.sum() <= 4
-        pixel = 2 * peak.reach / 100
-        near = gpu.pixels(view.map(gpu, state, wo, peak, "test", (100, 100), disc(peak.w), pixel))[..., :3] / 255.0
+        shown = (gpu, state, wo, 1.0, peak, peak.value, "test", (100, 100))
+        whole = gpu.pixels(view.map(*shown, (0.0, 0.0), 0.02))[..., :3] / 255.0
+        assert 1 <= np.all(np.abs(whole - viridis(1.0)) < 0.02, axis=-1).sum() <= 4
+        near = gpu.pixels(view.map(*shown, disc(peak.w), 2 * peak.reach / 100))[..., :3] / 255.0
         bright = np.mean(np.linalg.norm(near - viridis(0.0), axis=-1) > 0.5)
         assert 0.02 < bright < 0.6
 

@@ -223,7 +223,7 @@ def weights(name, model, sample=None):
     wo = viewers()
     value, error = albedo_with_error(model, wo, tolerance=1e-6, most=256)
     means = [mean_weight(model, w, sample=sample) for w in wo]
-    z = [np.max(np.abs(m.value - v) / (m.error + e)) for m, v, e in zip(means, value, error, strict=True)]
+    z = [np.max(quotient(np.abs(m.value - v), m.error + e)) for m, v, e in zip(means, value, error, strict=True)]
     k = int(np.argmax(z))
     note = f"sigma, largest at theta {THETAS[k]:g}: {means[k].value[0]:.6f} and {value[k][0]:.6f}"
     return Law(name, float(z[k]), 6.0, note)

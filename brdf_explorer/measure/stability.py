@@ -42,7 +42,7 @@ NODES = 24
 STEPS = (1, -1, 10, -10)
 """Changes of an argument that its condition is taken from, in UNITs. Ten of them see a kink next to it, as at total reflection,
 where a formula that rounds more than once may end on the other side."""
-PARTS = {"pdf_wi", "weight_wi", "refracted", "upward", "apart_from_one", "third", "flight"}
+PARTS = {"pdf_wi", "weight_wi", "refracted", "upward", "apart_from_one", "third", "flight", "exp_precise"}
 """Functions that are no rows: all of pdf and sample_f but for what has a row, or round nothing; and a depth, below 0 where a ray
 leaves."""
 COLORS = ("f", "F", "sample_f", "diffuse_f")
@@ -530,8 +530,8 @@ def subjects(model):
             there = hasattr(slot(file[4:-5]), function.name)
             if there and function.name in called - PARTS - {s.name for s in found}:
                 found.append(_chunk(cls, file, function, chosen))
-    # of an estimate one value says nothing; its parts have rows
-    own = ("pdf",) if model.stochastic else ("f", "pdf", "sample_f")
+    # of an estimate one value says nothing; its parts have rows, and so have those of a pdf of both sides
+    own = ("f", "pdf", "sample_f") if not model.stochastic else () if model.transmits else ("pdf",)
     return found + [_of_model(cls, model, function) for function in functions(path) if function.name in own]
 
 

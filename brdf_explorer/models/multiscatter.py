@@ -13,8 +13,8 @@ from ..lib.refraction import apart_from_one
 from ..model import Model, choice, param
 
 MOST = 64
-"""Orders of scattering that a walk has at most. Beyond lies 1e-7 of the energy where most is left, for white diffuse facets of
-alpha = 1."""
+"""Orders of scattering that a walk has at most. Beyond lies less than 1e-7 of the energy where most is left, for white diffuse
+facets of alpha = 1."""
 CLEAR = 1e-14
 """A Lambda below this: no facet lies ahead."""
 

@@ -69,9 +69,7 @@ class Factors(Drawn):
         width, height = size
         if not hasattr(state.model, "factors"):
             draw.text("No factors to show:", (width / 2, height / 2 + 9 * scale), "muted")
-            draw.text(
-                f"{state.model.name()} has no facets that are mirrors", (width / 2, height / 2 - 9 * scale), "muted"
-            )
+            draw.text(f"{state.model.name()} is no product of D, G and F", (width / 2, height / 2 - 9 * scale), "muted")
             yield draw, "", True
             return
         theta, values = self.curves(gpu, state)

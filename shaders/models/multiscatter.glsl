@@ -1,7 +1,7 @@
 // Facets that light meets many times: a random walk over Smith's microsurface. Heitz, Hanika, d'Eon and Dachsbacher 2016,
 // "Multiple-Scattering Microfacet BSDFs with the Smith Model". f is an unbiased estimate by one walk from wo, at each of whose facets
 // what goes on to wi is added up, in orders of scattering. Leaves out that heights and slopes of neighbouring facets go together, and
-// orders from MOST on: 1e-7 of the energy where most is left, for white diffuse facets of alpha = 1.
+// orders above MOST: less than 1e-7 of the energy where most is left, for white diffuse facets of alpha = 1.
 #include "params.glsl"
 #include "lib/common.glsl"
 #include "lib/random.glsl"

@@ -55,6 +55,8 @@ def material(cls, choices, rng):
         values = p.low * (p.high / p.low) ** u if p.scale == "log" else p.low + (p.high - p.low) * u
         values = values if rng.random() < 0.5 else values[:1].repeat(p.size)
         drawn[name] = typed(p, np.clip(values, p.low, p.high))
+    if cls.stochastic:  # most walks have not one of the later orders
+        drawn["first"] = 1
     return cls(**choices, **drawn)
 
 
