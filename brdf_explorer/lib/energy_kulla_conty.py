@@ -10,14 +10,22 @@ import numpy as np
 from .common import PI, TWO_PI, split, vec
 from .lost import alpha_mean
 
+COSINES = (0.212340538239, 0.590533135559, 0.911412040487)
+"""Cosines at which F is asked for its mean over directions, weighted by the cosine: Gauss's three points. Exact for Schlick's F;
+errs by up to 0.002 for metals, k > 1, by 0.003 for glass, eta > 1, and by 0.22 where total reflection begins, eta < 1, k small."""
 
-def F_multiple(F_mean, lost_mean):
-    """What facets that each reflect F_mean (..., 3) return of the light that one reflection lost.
 
-    Of each further reflection E_mean = 1 - lost_mean leaves. Two at least have been made, so F_mean counts twice.
+def F_mean(F_1, F_2, F_3):
+    return 0.139653959803 * F_1 + 0.458482212719 * F_2 + 0.401863827478 * F_3
+
+
+def F_multiple(F, lost_mean):
+    """What facets that each reflect F (..., 3), a mean, return of the light that one reflection lost.
+
+    Of each further reflection E_mean = 1 - lost_mean leaves. Two at least have been made, so F counts twice.
     """
     lost_mean = np.asarray(lost_mean)[..., None]
-    return F_mean * F_mean * ((1 - lost_mean) / (1 - F_mean * lost_mean))
+    return F * F * ((1 - lost_mean) / (1 - F * lost_mean))
 
 
 def wide(lost_o, lost_i, lost_mean):

@@ -55,7 +55,7 @@ class Microfacet(Model):
         if self.shadowing == "none":
             found["energy"] = np.inf
         elif self.energy != "none":
-            found["energy"] = 1 + self._gain()
+            found["energy"] = found.get("energy", 1.0) ** 2 * (1 + self._gain())
         if self.energy == "turquin":
             found["reciprocity"] = self._not_reciprocal()
         return found

@@ -4,14 +4,14 @@ import numpy as np
 
 from ..lib import slot
 from ..lib.common import mix, split, vec
-from ..lib.energy_kulla_conty import F_multiple, pdf_wide, sample_wide, share_wide, wide
+from ..lib.energy_kulla_conty import COSINES, F_mean, F_multiple, pdf_wide, sample_wide, share_wide, wide
 
 
 def wide_f(material, wo, wi):
     alpha, lost = np.array(material.alpha), slot("lost", material.ndf, material.shadowing)
     mean = lost.lost_mean(alpha)
-    F_mean = slot("fresnel_mean", material.fresnel).F_mean(np.array(material.eta), np.array(material.k))
-    return F_multiple(F_mean, mean) * wide(lost.lost(wo, alpha), lost.lost(wi, alpha), mean)[..., None]
+    facet = F_mean(*(material.facet(c) for c in COSINES))
+    return F_multiple(facet, mean) * wide(lost.lost(wo, alpha), lost.lost(wi, alpha), mean)[..., None]
 
 
 def wide_share(material, wo):

@@ -6,10 +6,16 @@
 #include "lib/lost.glsl"
 #include "lib/transcendental.glsl"
 
-// What facets that each reflect F_mean return of the light that one reflection lost: of each further reflection E_mean leaves. Two at
-// least have been made, so F_mean counts twice.
-vec3 F_multiple(vec3 F_mean, float lost_mean) {
-  return F_mean * F_mean * ((1.0 - lost_mean) / (1.0 - F_mean * lost_mean));
+// Cosines at which F is asked for its mean over directions, weighted by the cosine: Gauss's three points. Exact for Schlick's F; errs by up
+// to 0.002 for metals, k > 1, by 0.003 for glass, eta > 1, and by 0.22 where total reflection begins, eta < 1 and k small.
+const vec3 COSINES = vec3(0.212340538239, 0.590533135559, 0.911412040487);
+
+vec3 F_mean(vec3 F_1, vec3 F_2, vec3 F_3) { return 0.139653959803 * F_1 + 0.458482212719 * F_2 + 0.401863827478 * F_3; }
+
+// What facets that each reflect F, a mean, return of the light that one reflection lost: of each further reflection E_mean leaves. Two at
+// least have been made, so F counts twice.
+vec3 F_multiple(vec3 F, float lost_mean) {
+  return F * F * ((1.0 - lost_mean) / (1.0 - F * lost_mean));
 }
 
 // The lobe of white facets, 1/sr.

@@ -1,12 +1,12 @@
 // Slot energy of microfacet: single scattering and a wide lobe; of the directions drawn the wide lobe has its share.
 #include "lib/energy_kulla_conty.glsl"
-#include "lib/fresnel_mean_{fresnel}.glsl"
 #include "lib/lost_{ndf}_{shadowing}.glsl"
 
 vec3 wide_f(vec3 wo, vec3 wi) {
   float mean = lost_mean(material.alpha);
-  vec3 color = F_multiple(F_mean(material.eta, material.k), mean);
-  return color * wide(lost(wo, material.alpha), lost(wi, material.alpha), mean);
+  vec3 facet = F_mean(F(COSINES.x, material.eta, material.k), F(COSINES.y, material.eta, material.k),
+                      F(COSINES.z, material.eta, material.k));
+  return F_multiple(facet, mean) * wide(lost(wo, material.alpha), lost(wi, material.alpha), mean);
 }
 
 float wide_share(vec3 wo) { return share_wide(F(1.0, material.eta, material.k), lost(wo, material.alpha)); }
