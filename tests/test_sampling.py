@@ -128,7 +128,7 @@ def test_weight_is_f_cos_over_pdf(cls, choices):
             with seeded(1):
                 wi, weight = model.sample_f(wo, u)
             pdf = model.pdf(wo, wi)
-            height = np.abs(wi[:, 2]) if cls.transmits else wi[:, 2]
+            height = np.abs(wi[:, 2]) if model.transmits else wi[:, 2]
             known = (pdf > 1e-200) & (height > 1e-6)
             with seeded(1):
                 expected = model.f(wo, wi)[known] * height[known, None] / pdf[known, None]

@@ -12,7 +12,7 @@ from .lost import alpha_mean
 
 COSINES = (0.212340538239, 0.590533135559, 0.911412040487)
 """Cosines at which F is asked for its mean over directions, weighted by the cosine: Gauss's three points. Exact for Schlick's F;
-errs by up to 0.002 for metals, k > 1, by 0.003 for glass, eta > 1, and by 0.22 where total reflection begins, eta < 1, k small."""
+errs by up to 0.002 for metals, k > 1, 0.003 for glass, eta > 1, and 0.22 where total reflection begins, eta < 1, k small."""
 
 
 def F_mean(F_1, F_2, F_3):

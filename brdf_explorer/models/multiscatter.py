@@ -48,9 +48,9 @@ class Multiscatter(Model):
     ndf: str = choice("ggx", ("ggx", "beckmann"), "distribution of the facets' normals")
     fresnel: str = choice("conductor", ("conductor", "dielectric", "schlick", "one"), "reflectance of a facet")
 
-    @property
-    def transmits(self):
-        return self.facets == "dielectric"
+    def __post_init__(self):
+        super().__post_init__()
+        object.__setattr__(self, "transmits", self.facets == "dielectric")
 
     def index(self):
         return float(apart_from_one(self.eta_below)) if self.transmits else None

@@ -208,12 +208,12 @@ class Polar(Drawn, Diagram):
         draw.text("ωo", viewer, "accent", size=13.0)
 
         legend = [(QUANTITIES[self.quantity], "ink")]
-        for s in slices:
-            color = self.color(s, colors)
-            if s.error is not None and np.isfinite(s.error).all():  # from one end of each bar to the next: a band
-                ends = np.stack([s.single - s.error, s.single + s.error], axis=-1)
-                stroke(np.repeat(s.theta, 2), reach(np.maximum(ends, 0.0)).ravel(), color, 1.5, 0.3)
-        draw.over()
+        bands = [s for s in slices if s.error is not None and np.isfinite(s.error).all()]
+        for s in bands:  # from one end of each bar to the next
+            ends = np.stack([s.single - s.error, s.single + s.error], axis=-1)
+            stroke(np.repeat(s.theta, 2), reach(np.maximum(ends, 0.0)).ravel(), self.color(s, colors), 1.5, 0.3)
+        if bands:
+            draw.over()
         for s in slices:
             color = self.color(s, colors)
             stroke(s.theta, reach(s.single), color, 4.0 if s.error is None else 2.0)
