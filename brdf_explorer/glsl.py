@@ -121,7 +121,7 @@ def of_model(path, model, dialect="330 core", slots=None, generated=None, formul
     own = {"model": model.name(), "seeding": "pixel" if model.stochastic else "none"}
     return assemble(
         path,
-        {**own, **model.choices(), **(slots or {})},
+        {**own, **model.slots(), **(slots or {})},
         {"params.glsl": params_glsl("material", type(model)), **(generated or {})},
         dialect,
         formulas,

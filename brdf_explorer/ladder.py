@@ -62,7 +62,7 @@ class Ladder:
         """The method that a state uses, or None if it is none of these."""
         at = state.model if self.section == "material" else state.views[self.section]
         known = {"model": at.name()} | {name: getattr(at, name) for name in declared(at)}
-        return next((m for m in self.methods if m.changes and m.changes.items() <= known.items()), None)
+        return next((m for m in self.methods if m.changes is not None and m.changes.items() <= known.items()), None)
 
     def stochastic(self, state):
         """Whether some method's f is an estimate."""
@@ -90,9 +90,13 @@ def not_of_ggx(state):
 
 
 def loses(state):
-    """Whether facets that are mirrors, and opaque, lose what meets more than one of them."""
-    model = state.model
-    return model.name() == "microfacet" or (model.name() == "multiscatter" and model.facets == "conductor")
+    """Whether facets that are mirrors, and opaque, lose what meets more than one of them, and the walk knows their Fresnel."""
+    model, known = state.model, declared(MODELS["multiscatter"])["fresnel"].options
+    return (
+        model.name() == "multiscatter"
+        and model.facets == "conductor"
+        or (model.name() == "microfacet" and model.fresnel in known)
+    )
 
 
 def walk(orders):

@@ -156,6 +156,10 @@ class Model(Declared):
     stochastic = False
     """True: f returns an unbiased estimate, another one at each call."""
 
+    def slots(self):
+        """What fills the slots in the paths of its shader, by name: its choices."""
+        return self.choices()
+
     def slopes(self):
         """(alpha_x, alpha_y): scale of the half vectors' slopes over which f varies; grids and quadrature follow it."""
         return (1.0, 1.0)

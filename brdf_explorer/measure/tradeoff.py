@@ -11,7 +11,8 @@ from ..model import Invalid
 from . import cost
 from .cost import Cost
 from .error import METRICS, RAYS, ROUNDING, Measured, Values, values
-from .laws import Shader, viewers
+from .laws import Shader as OnGpu
+from .laws import viewers
 
 NATURAL = {"f": "rmse", "samples": "spread", "picture": "picture"}
 """The metric by which a ladder is judged if no other is asked for, by what it measures."""
@@ -235,7 +236,7 @@ def kept_errors(gpu, ladder, state, metric):
     )
     if key not in gpu.errors:
         kind = METRICS[metric].compares
-        kind = "estimates" if kind == "values" and ladder.stochastic(state) else kind
+        kind = "estimates" if kind == "values" and ladder.measures == "f" and ladder.stochastic(state) else kind
         errors = {
             "values": value_errors,
             "estimates": estimate_errors,
@@ -280,7 +281,7 @@ def estimate_errors(gpu, ladder, state, metric):
     tables, found = {name: [] for name in models}, {}
     for n in range(1, PARTS + 1):
         for name, model in models.items():
-            evaluator, count = (Shader(gpu, model), WALKS) if model.stochastic else (model, int(n == 1))
+            evaluator, count = (OnGpu(gpu, model), WALKS) if model.stochastic else (model, int(n == 1))
             means = Values(0.0, 0.0, 0.0, 0.0)
             for k in range(count):
                 seed = 2 * (WALKS * n + k)  # of f there and back

@@ -91,7 +91,7 @@ class Microfacet(Model):
 
     def facet(self, c):
         """Reflectance (..., 3) of a facet at a cosine of incidence (...)."""
-        return slot("fresnel", self.fresnel).F(np.asarray(c), np.array(self.eta), np.array(self.k))
+        return slot("fresnel", self.slots()["fresnel"]).F(np.asarray(c), np.array(self.eta), np.array(self.k))
 
     def single_wi(self, wo, u):
         """Directions drawn for single scattering, of viewers above the horizon."""
