@@ -24,8 +24,9 @@ SIDE = 96
 """Pixels along each side of the spheres that errors of pictures are measured on."""
 PASSES = 64
 """Passes of each, under an environment, if the methods do not differ in them."""
-PARTS, WALKS = 16, 4
-"""Of a model whose f is an estimate: independent tables of values, and estimates that are averaged in each."""
+PARTS, WALKS, TOGETHER = 16, 8, 4
+"""Of a model whose f is an estimate: independent tables of values by half the rays, estimates that are averaged in each, and how
+many of these are made between two yields."""
 ROUGH = 4
 """Tables of which first errors are found."""
 KEPT = 200
@@ -281,11 +282,11 @@ def estimate_errors(gpu, ladder, state, metric):
     tables, found = {name: [] for name in models}, {}
     for n in range(1, PARTS + 1):
         for name, model in models.items():
-            evaluator, count = (OnGpu(gpu, model), WALKS) if model.stochastic else (model, int(n == 1))
+            on, count = (OnGpu(gpu, model), WALKS // TOGETHER) if model.stochastic else (model, int(n == 1))
             means = Values(0.0, 0.0, 0.0, 0.0)
             for k in range(count):
-                seed = 2 * (WALKS * n + k)  # of f there and back
-                means = sum_of(means, values(evaluator, alpha, RAYS, None, index, seed, 1), 1 / count)
+                seed = 2 * (WALKS * n + TOGETHER * k)  # of f there and back
+                means = sum_of(means, values(on, alpha, RAYS // 2, None, index, seed, TOGETHER), 1 / count)
                 yield found
             tables[name] += [means] * (count > 0)
         if n in (ROUGH, PARTS):
