@@ -300,11 +300,13 @@ def estimate_errors(gpu, ladder, state, metric):
                 yield found
 
 
+@np.errstate(under="ignore")  # in the tails of a density
 def sum_of(a, b, share):
     """Values a + share b."""
     return Values(*(getattr(a, n) + share * getattr(b, n) for n in Values.__dataclass_fields__))
 
 
+@np.errstate(under="ignore")
 def mean_without(tables, k):
     """The mean of Values without the k-th; of one alone that one."""
     kept = [table for i, table in enumerate(tables) if i != k] if len(tables) > 1 else tables
