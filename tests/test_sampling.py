@@ -59,7 +59,10 @@ def least(tests):
 
 def test_samplers_are_told_apart():
     assert {c["sampling"] for cls, c in SAMPLERS if cls is Microfacet and c["ndf"] == "ggx"} == set(SAMPLING)
-    assert len([c for cls, c in SAMPLERS if cls is Microfacet and c["ndf"] == "beckmann"]) == 2  # ndf and visible
+    alone = [
+        c for cls, c in SAMPLERS if cls is Microfacet and c["energy"] != "kulla_conty"
+    ]  # which has a lobe of its own
+    assert len([c for c in alone if c["ndf"] == "beckmann"]) == 2  # ndf and visible
 
 
 @pytest.mark.parametrize("twin", ["float64", "float32"])
@@ -83,7 +86,7 @@ def test_pdf_integrates_to_the_share_above_the_horizon(cls, choices):
         for wo in viewers():
             mass = integral(lambda o, i, m=model: m.pdf(o, i)[..., None], wo, model.slopes(), index=model.index())
             # where facets refract on edge, pdf has a kink or ends by a step: more than 10 000 samples tell is enough
-            known, binned = (1e-3, 3e-3) if model.transmits else (1e-8, 1e-6)
+            known, binned = (1e-3, 3e-3) if model.transmits else (1e-8, 5e-6)
             assert mass.error[0] < known and mass.value[0] < 1 + 1e-9
             assert bins(model, wo).sum() == pytest.approx(mass.value[0], abs=binned)
             height = model.sample_f(wo, rng.random((10_000, 2)))[0][:, 2]

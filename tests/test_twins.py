@@ -45,6 +45,7 @@ NEEDS = {  # what stands before a chunk that declares functions of other slots
 ONLY_NUMPY = {
     "common": {"dot", "length", "normalize", "mix", "quotient", "vec", "split", "above_horizon"},  # words that GLSL has
     "srgb": {"srgb_decode"},  # colours of the interface become linear once, on their way in
+    "lost": {"interpolated", "lost_by", "lost_mean_by"},  # numpy is handed the tables
     "lambert_sphere": {"polynomial"},  # a series of one variable
     "diffuse_lambert_sphere_fast": {"grazing_albedo"},  # of a law's limit
     "gauss_8": {"gauss"},  # of whole numbers, as their twins; in f of nonspecular
@@ -218,6 +219,14 @@ DRAWS = {
     "albedo": either(ZERO, uniform(0, 1)),
     "Lambda_o": either(ZERO, decades(1e-6, 1e4)),
     "Lambda_i": either(ZERO, decades(1e-6, 1e4)),
+    "lost_o": either(ZERO, decades(1e-8, 0.7)),
+    "lost_i": either(ZERO, decades(1e-8, 0.7)),
+    "lost_mean": decades(1e-8, 0.7),
+    "F": uniform(0, 1),
+    "F_1": uniform(0, 1),
+    "F_2": uniform(0, 1),
+    "F_3": uniform(0, 1),
+    "f": uniform(0, 1),
     "color": decades(1e-4, 1e3),
     "linear": either(decades(1e-6, 1), uniform(0, 1)),
     "cos_o": COSINE,
@@ -237,6 +246,7 @@ DRAWS = {
     "L": sum_length,
     "z": one_plus(decades(1e-6, 1e6)),
     # of one function, whose argument's name says less than its domain
+    "expm1_precise.x": either(uniform(0, 88), decades(1e-6, 80)),
     "exp_precise.x": either(uniform(-87, 88), signed(decades(1e-6, 80))),
     "log_precise.x": either(decades(1e-6, 1e6), one_plus(signed(decades(1e-6, 0.9)))),
     "erfcx_precise.x": either(decades(1e-6, 6.5), uniform(0, 6.5)),

@@ -69,19 +69,19 @@ def spread(model, alpha, n=RAYS):
     return float(np.sqrt(max(np.mean(squares), 0.0)))
 
 
-def values(evaluator, alpha, n=RAYS, wo=None, index=None):
+def values(evaluator, alpha, n=RAYS, wo=None, index=None, seed=0, estimates=ESTIMATES):
     """The Values of an evaluator, which has f(wo, wi), for slopes of scale alpha (2,); methods are compared at one alpha.
 
     wo: other viewers (viewers, 3) than those of the laws. index: as Model.index, for both sides of the surface.
-    A stochastic f is the mean of ESTIMATES, by the same random numbers for all methods, so that these differ by what they do and
-    not by chance.
+    A stochastic f is the mean of some estimates, by the same random numbers for all methods, so that these differ by what they do
+    and not by chance; another seed gives independent ones.
     """
     wo = viewers() if wo is None else wo
     grids, weight = zip(*(quadrature(w, alpha, n, index) for w in wo), strict=True)
     wi = np.stack([g.wi for g in grids])
     wo = wo[:, None, None]
-    repeats = ESTIMATES if getattr(evaluator, "stochastic", False) else 1
-    with seeded(0):
+    repeats = estimates if getattr(evaluator, "stochastic", False) else 1
+    with seeded(seed):
         f, back = (
             sum(np.asarray(evaluator.f(*pair), dtype=float) for _ in range(repeats)) / repeats
             for pair in ((wo, wi), (wi, wo))
@@ -204,19 +204,21 @@ class Metric:
     """A measure of error.
 
     compares "values" or "pictures": function(found, reference) of two of these -> float; "samples": function(model, alpha, n).
+    extreme  whether it is the largest of many values, not a mean, which noise makes larger
     """
 
     title: str
     compares: str
     function: Callable
     unit: str = ""
+    extreme: bool = False
 
 
 METRICS = {
     "rmse": Metric("relative RMSE of f cos θ", "values", rmse),
-    "maximum": Metric("largest relative error of f", "values", largest),
+    "maximum": Metric("largest relative error of f", "values", largest, extreme=True),
     "energy": Metric("largest error of albedo", "values", energy),
-    "reciprocity": Metric("largest error of reciprocity", "values", reciprocity),
+    "reciprocity": Metric("largest error of reciprocity", "values", reciprocity, extreme=True),
     "spread": Metric("relative standard error of one sample", "samples", spread),
     "picture": Metric("relative RMSE of the sphere", "pictures", picture_rmse),
     "brightness": Metric("relative error of the sphere's mean", "pictures", picture_energy),

@@ -219,6 +219,14 @@ ORDINARY = {
     "Lambda_o": decades(1e-3, 10.0),
     "Lambda_i": decades(1e-3, 10.0),
     "density": decades(1e-3, 1e3),
+    "lost_o": decades(1e-8, 0.7),
+    "lost_i": decades(1e-8, 0.7),
+    "lost_mean": decades(1e-8, 0.7),
+    "F0": linear(0.02, 1.0),
+    "F": linear(0.02, 1.0),
+    "F_1": linear(0.02, 1.0),
+    "F_2": linear(0.02, 1.0),
+    "F_3": linear(0.02, 1.0),
     "depth": decades(1e-2, 10.0),
     "area": linear(0.05, 1.0),
     "hidden": decades(1e-3, 1.0),
@@ -818,7 +826,8 @@ SWAPPED = {"wo": "wi", "wi": "wo", "Lambda_o": "Lambda_i", "Lambda_i": "Lambda_o
 
 
 def reciprocity(gpu, subject, form, batch):
-    """Largest relative change under an exchange of light and viewer, where f or G2 is well conditioned, and at which point."""
+    """Largest relative change under an exchange of light and viewer, beyond that of the float64 value, where f or G2 is well
+    conditioned, and at which point."""
     if subject.name not in ("f", "G2"):
         return 0.0, 0
     arguments = {name: batch.arguments[SWAPPED.get(name, name)] for name in batch.arguments}
@@ -834,7 +843,9 @@ def reciprocity(gpu, subject, form, batch):
     asked = np.flatnonzero(np.max(change, axis=1) > LIMIT)
     if len(asked):  # of these the condition may not be known yet
         condition = subject.condition({name: v[asked] for name, v in batch.arguments.items()})
-        change[asked] = np.where(condition * UNIT > WELL, 0.0, change[asked])
+        exact = subject.exact({name: v[asked] for name, v in arguments.items()})
+        own = np.abs(batch.exact[asked] - exact) / np.maximum(size, floor)[asked]
+        change[asked] = np.where(condition * UNIT > WELL, 0.0, np.maximum(change[asked] - own, 0.0))
     change = np.max(change, axis=1)
     k = int(np.argmax(change))
     return float(change[k]), k
