@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from brdf_explorer.ladder import LADDERS
-from brdf_explorer.lib import fresnel, slot
+from brdf_explorer.lib import fresnel, schlick, slot
 from brdf_explorer.lib.energy_kulla_conty import COSINES, F_mean, pdf_wide, sample_wide
 from brdf_explorer.measure.albedo import albedo
 from brdf_explorer.measure.error import METRICS, Values, itp, rmse, spread
@@ -85,7 +85,7 @@ def test_mean_reflectances():
     assert 0.0007 < off(fresnel.F_conductor, eta, k)[k > 1].max() < 0.002
     glassy = off(fresnel.F_dielectric, eta)
     assert 0.001 < glassy[eta > 1].max() < 0.003 and 0.1 < glassy.max() < 0.22
-    assert off(fresnel.F_schlick, rng.random(9)).max() < 1e-9
+    assert off(schlick.F_schlick, rng.random(9)).max() < 1e-9
 
 
 # --- furnaces --------------------------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ import pytest
 from oracles.cases import CASES, SLOW, case_label, choices_of, pairwise, typed
 
 from brdf_explorer.glsl import SHADERS, Signature, assemble, functions
-from brdf_explorer.lib import fresnel
+from brdf_explorer.lib import fresnel, schlick
 from brdf_explorer.lib.common import PI, TWO_PI, dot, length, normalize, quotient, vec
 from brdf_explorer.lib.fresnel import eta2_cos2_t
 from brdf_explorer.lib.random import seeded
@@ -312,8 +312,8 @@ FLOORS = {
         1.2e-7 * np.where(eta < 0.7, eta**2 + (1 - c) * (1 + c), np.abs(eta**2 - 1) + c**2)
     ),
     # Schlick's curve less what bends it, each known to 8 roundings.
-    "fresnel.F_f82": lambda c, F0, F82: 8 * 6e-8 * fresnel.F_schlick(c, F0),
-    "fresnel_f82.F": lambda c, eta, k: 8 * 6e-8 * fresnel.F_schlick(c[:, None], fresnel.F0(eta, k)),
+    "schlick.F_f82": lambda c, F0, F82: 8 * 6e-8 * schlick.F_schlick(c, F0),
+    "fresnel_f82.F": lambda c, eta, k: 8 * 6e-8 * schlick.F_schlick(c[:, None], fresnel.F0(eta, k)),
     # eta cos_t = t is the root of what is known to 2.4e-7.
     "refraction.refracted": lambda w, wm, eta: refraction_floor(dot(w, wm), eta),
     # Blacks are differences of numbers near 0.1, and a display value below 1e-6 is black on any screen.
@@ -618,7 +618,7 @@ WRONG = {
     "lost 1/pi": ("ndf_ggx.D", lambda D, wm, alpha: PI * D(wm, alpha)),
     "exchanged alpha": ("ndf_beckmann.D", lambda D, wm, alpha: D(wm, alpha[:, ::-1])),
     "mean alpha": ("smith_ggx_exact.Lambda", lambda L, w, alpha: L(w, alpha.mean(axis=-1, keepdims=True) * [1, 1])),
-    "exchanged arguments": ("fresnel.F_schlick", lambda F, c, F0: F(F0, c)),
+    "exchanged arguments": ("schlick.F_schlick", lambda F, c, F0: F(F0, c)),
     "a last digit": ("shadowing_directional.G2", lambda G, *a: G(*a) * (1 + 2e-5)),
     "no number": ("fresnel.F0", lambda F0, eta, k: np.where(k > 14, np.nan, F0(eta, k))),
 }

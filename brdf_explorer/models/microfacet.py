@@ -5,12 +5,12 @@ from importlib import import_module
 
 import numpy as np
 
+from .. import microsurface
 from ..lib import slot
 from ..lib.common import HORIZON, above_horizon, split, vec
 from ..lib.energy_turquin import gain_turquin
 from ..lib.microfacet import cos_facet
 from ..model import Model, choice
-from . import microsurface
 
 GAINS = {"turquin": (0.005, 0.08, 0.3), "kulla_conty": (0.004, 0.05, 0.25)}
 """What the fits of what facets lose may create: of isotropic alpha, of others, and of others with shadowing by azimuth."""

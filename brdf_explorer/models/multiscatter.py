@@ -6,12 +6,12 @@ from importlib import import_module
 
 import numpy as np
 
+from .. import microsurface
 from ..lib import slot
 from ..lib.common import quotient, split
 from ..lib.random import Draws, next_pass, random_states
 from ..lib.refraction import apart_from_one
 from ..model import Model, choice, param
-from . import microsurface
 
 MOST = 64
 """Orders of scattering that a walk has at most. Beyond lies less than 1e-7 of the energy where most is left, for white diffuse

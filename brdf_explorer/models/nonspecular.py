@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .. import microsurface
 from ..lib import slot
 from ..lib.common import HORIZON, above_horizon, quotient, split
 from ..lib.facet_lobe import blurred
 from ..lib.facets import facets
 from ..lib.microfacet import cos_facet
 from ..model import Model, choice, param
-from . import microsurface
 
 
 @dataclass(frozen=True)
