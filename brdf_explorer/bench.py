@@ -4,7 +4,8 @@ import subprocess
 import sys
 import time
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -16,7 +17,8 @@ from .measure.cost import interleaved
 from .measure.estimator import Runs, moments, samplers, slope
 from .measure.grid import direction
 from .measure.tradeoff import tradeoffs, works
-from .state import State, load
+from .models import MODELS
+from .state import Material, State, load
 
 SIZE = (1024, 1024)
 SMALL = (256, 256)
@@ -78,7 +80,9 @@ def report(repeats=31, processes=5):
     with offscreen() as gpu:
         yield from charting(gpu)
         yield from drawing(gpu, repeats)
+        yield from walking(gpu, repeats)
     yield from sampling(State().model)
+    yield from sampling(MODELS["multiscatter"](alpha=0.5, fresnel="one"), mean=1.0, groups=4)
     yield from starting(processes)
 
 
@@ -154,18 +158,69 @@ def drawing(gpu, repeats):
     yield figure("polar slice 676x210", times["polar"] * 1e3, "ms")
 
 
-def sampling(model, theta_o=60.0, samples=4096, groups=8):
-    """How the error of the estimator falls with the number of samples: slopes of log error to log N, of groups of runs."""
+def walking(gpu, repeats, size=(512, 512)):
+    """Costs of walks over the microsurface against what they cannot do without, and of the first pictures made of them."""
+    yield from map(partial(walk, gpu, repeats, size), ("ggx", "beckmann"))
+    state = State((Material("Walk", MODELS["multiscatter"](alpha=0.5, fresnel="one")),))
+
+    def first(name):
+        def run():
+            next(state.views[name].pictures(gpu, state, size))
+            gpu.ctx.finish()
+
+        return run
+
+    for name, times in interleaved({name: first(name) for name in ("sphere", "lobe", "polar")}, repeats).items():
+        yield figure(f"first picture of walks, {name} 512x512", times * 1e3, "ms", limit=100)
+
+
+def walk(gpu, repeats, size, ndf):
+    """What a walk costs over its least: the facets that it meets, times the evaluations for one of them without a loop."""
+    material = MODELS["multiscatter"](alpha=0.5, ndf=ndf)
+    target = gpu.target("bench walk", size)
+    shaders = {
+        "fill": assemble("views/fill.frag"),
+        "walk": of_model("views/evaluate.frag", material),
+        "step": assemble("views/step.frag", material.choices()),
+    }
+    uniforms = {"size": tuple(map(float, size)), "material": material}
+    uniforms |= {name: getattr(material, name) for name in ("alpha", "eta", "k")}
+
+    def drawn(source):
+        program = gpu.program(source)
+
+        def run():
+            gpu.draw(program, target, uniforms)
+            gpu.ctx.finish()
+
+        return run
+
+    times = interleaved({name: drawn(source) for name, source in shaders.items()}, repeats)
+    bare = {name: np.maximum(t - times["fill"], 1e-9) for name, t in times.items()}
+    # what is scattered from order k on is, where nothing is lost, the chance to meet k facets
+    white = replace(material, fresnel="one")
+    wo, u = direction(np.radians(25.0), 0.0), np.random.default_rng(1).random((50_000, 2))
+    facets = sum(float(gpu.sample_f(replace(white, lowest=k), wo, u)[1][:, 0].mean()) for k in range(1, 13))
+    name = f"a walk of {ndf}, alpha = 0.5, over its {facets:.2f} facets x the evaluations for one"
+    return figure(name, bare["walk"] / (facets * bare["step"]), limit=3)
+
+
+def sampling(model, theta_o=60.0, samples=4096, groups=8, mean=None):
+    """How the error of the estimator falls with the number of samples: slopes of log error to log N, of groups of runs.
+
+    mean: the albedo, where it is known; else it is by quadrature.
+    """
     wo = direction(np.radians(theta_o), 0.0)
     models, own = samplers(model)
-    known = [m for m in moments([models[own]], wo) if m][-1]
+    mean = mean or [m for m in moments([models[own]], wo) if m][-1].mean
     slopes = []
     for seed in range(groups):
         runs = Runs(models[own], wo, seed=seed)
         while not runs.counts or runs.counts[-1] < samples:
             deque(runs.double(), 0)
-        slopes.append(slope(runs.counts, runs.estimates, known.mean).value)
-    name = f"slope of the error of {own} samples over N, log to log, where 1/sqrt(N) has -0.5"
+        slopes.append(slope(runs.counts, runs.estimates, mean).value)
+    what = f"{own} samples" if own != "its own" else f"samples of {model.name()}"
+    name = f"slope of the error of {what} over N, log to log, where 1/sqrt(N) has -0.5"
     yield figure(name, slopes, limit=-0.45)
 
 

@@ -376,24 +376,38 @@ def render(state, preset, view, size, scale, seconds, output):
 def eval_(state, preset, wo, wi, shader, as_json):
     """Print f, pdf and albedo of PRESET.
 
-    The directional albedo is for wo, by quadrature in float64.
+    The directional albedo is for wo, by quadrature in float64. Of a stochastic model f and albedo are means of estimates, with
+    their standard errors.
     """
     import json
 
     import numpy as np
 
     from .gpu import offscreen
-    from .measure import albedo
+    from .lib.random import seeded
+    from .measure import albedo_with_error
     from .measure.grid import direction
+    from .measure.laws import Shader
+    from .measure.noise import WALKS, mean_f
     from .state import values
 
     model = state.model
+
+    def evaluated(evaluator):
+        """f, its error if it is a mean, and pdf."""
+        if not model.stochastic:
+            return evaluator.f(**directions), None, evaluator.pdf(**directions)
+        with seeded(0):  # the same numbers each time
+            return *mean_f(evaluator, **directions), evaluator.pdf(**directions)
+
     directions = {name: direction(*np.radians(angles)) for name, angles in (("wo", wo), ("wi", wi))}
     if shader:
         with offscreen() as gpu:
-            f, pdf = gpu.f(model, **directions), gpu.pdf(model, **directions)
+            f, error, pdf = evaluated(Shader(gpu, model))
     else:
-        f, pdf = model.f(**directions), model.pdf(**directions)
+        f, error, pdf = evaluated(model)
+    with seeded(0):
+        albedo = albedo_with_error(model, directions["wo"], tolerance=1e-8, most=1024)
     answer = {
         "material": state.material.name,
         "model": model.name(),
@@ -403,8 +417,13 @@ def eval_(state, preset, wo, wi, shader, as_json):
         "wi": {"theta": wi[0], "phi": wi[1], "direction": directions["wi"].tolist()},
         "f": np.asarray(f).tolist(),
         "pdf": float(pdf),
-        "albedo": albedo(model, directions["wo"], tolerance=1e-8, most=1024).tolist(),
+        "albedo": albedo.value.tolist(),
     }
+    errors = {}
+    if model.stochastic:
+        errors = {"f": np.asarray(error).tolist(), "albedo": albedo.error.tolist()}
+        answer["standard_error"] = errors
+        answer["walks"] = WALKS
     if as_json:
         click.echo(json.dumps(answer, indent=2, allow_nan=False))
         return
@@ -414,7 +433,11 @@ def eval_(state, preset, wo, wi, shader, as_json):
         f"{state.material.name} ({model.name()}), wo {wo[0]:g},{wo[1]:g}, wi {wi[0]:g},{wi[1]:g}, {answer['precision']}"
     )
     for name, numbers in rows.items():
-        click.echo(f"{name:<12}" + "  ".join(f"{n:.{digits}g}" for n in numbers))
+        off = errors.get(name.split(" ")[0].removesuffix("(wo)"))
+        if off is None:
+            click.echo(f"{name:<12}" + "  ".join(f"{n:.{digits}g}" for n in numbers))
+        else:
+            click.echo(f"{name:<12}" + "  ".join(f"{n:.6g} ± {e:.1g}" for n, e in zip(numbers, off, strict=True)))
 
 
 @main.command(cls=Flagged, sections=("material", "directions"))

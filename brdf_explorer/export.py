@@ -291,11 +291,14 @@ def save_table(gpu, state, path, rays=RAYS, nodes=NODES):
         raise Invalid(f"rays = {rays} is not an even number from 4 to {most}")
     if not (3 <= nodes <= most and nodes % 2 == 1):
         raise Invalid(f"nodes = {nodes} is not an odd number from 3 to {most}")
-    found = tables(gpu, state.model, state.directions, rays, nodes)
+    found = tables(gpu, state.model, state.directions, rays, nodes, passes=128)
     wi, f, weight = (np.concatenate(parts) for parts in zip(*((t.grid.wi, t.f, t.weight) for t in found), strict=True))
     theta, phi = np.degrees(angles(wi))
     columns = {"theta_i": theta, "phi_i": phi}
     columns |= {f"f_{c}": f[..., i] for i, c in enumerate("rgb")}
+    if state.model.stochastic:
+        error = np.concatenate([t.error for t in found])
+        columns |= {f"error_{c}": error[..., i] for i, c in enumerate("rgb")}
     columns |= {"pdf": gpu.pdf(state.model, found[0].wo, wi), "weight": weight}
     about = [
         f"f of {state.material.name!r} ({state.model.name()}) over directions to the light, by the shader in float32",
@@ -305,6 +308,8 @@ def save_table(gpu, state, path, rays=RAYS, nodes=NODES):
         f"{rays} rays of {nodes} directions, each from the mirror direction to the horizon; ray 0 and ray {rays // 2} are the"
         " plane of incidence",
     ]
+    if state.model.stochastic:
+        about.append(f"f is a mean of {found[0].walks} estimates; error_r, error_g, error_b: its standard error")
     if len(found) > 1:
         about.append(
             f"{rays} more rays, of directions below the surface, begin at the direction that a flat surface refracts to"

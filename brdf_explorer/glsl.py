@@ -117,10 +117,11 @@ def params_glsl(name, cls):
 
 
 def of_model(path, model, dialect="330 core", slots=None, generated=None, formulas="stable"):
-    """A shader that uses the model: {model} and its slots are filled, `params.glsl` declares `material`."""
+    """A shader that uses the model: {model}, {seeding} and its slots are filled, `params.glsl` declares `material`."""
+    own = {"model": model.name(), "seeding": "pixel" if model.stochastic else "none"}
     return assemble(
         path,
-        {"model": model.name(), **model.slots(), **(slots or {})},
+        {**own, **model.slots(), **(slots or {})},
         {"params.glsl": params_glsl("material", type(model)), **(generated or {})},
         dialect,
         formulas,
@@ -140,20 +141,23 @@ class Signature:
     def __init__(self, text):
         head, _, tail = text.partition("(")
         result, self.name = head.split()
-        parts = [p.split() for p in tail.rstrip(") {").split(",")]
+        parts = [p.split() for p in tail.rstrip(") {").split(",") if p]
         self.inputs = [self.Kind(p[-2]) for p in parts if p[0] != "out"]
         self.out = [self.Kind(p[-2]) for p in parts if p[0] == "out"]
         self.order = [p[0] == "out" for p in parts]
         self.outputs = [self.Kind(result), *self.out]
 
-    def call(self):
-        """GLSL of a main that fetches the arguments of this pixel's row, calls the function and writes what it gives."""
-        lines = []
+    def call(self, first=""):
+        """GLSL of a main that fetches the arguments of this pixel's row, calls the function and writes what it gives.
+
+        first: statements that it begins with, such as "seed_random(pass);".
+        """
+        lines = ["uniform uint pass;"] if first else []
         for i, kind in enumerate(self.inputs):
             lines.append(f"uniform highp {'u' if kind.unsigned else ''}sampler2D argument{i};")
         for i in range(len(self.outputs)):
             lines.append(f"layout(location = {i}) out vec4 result{i};")
-        lines.append("void main() {\n  ivec2 row = ivec2(gl_FragCoord.xy);")
+        lines.append(f"void main() {{\n  {first}ivec2 row = ivec2(gl_FragCoord.xy);")
         for i, kind in enumerate(self.out):
             lines.append(f"  {kind.glsl} out{i};")
         inputs, out = iter(range(len(self.inputs))), iter(range(len(self.out)))
@@ -187,7 +191,7 @@ class Function:
     def arguments(self):
         """[(type, name)] of what goes in."""
         inside = self.signature.partition("(")[2].rstrip(")")
-        return [tuple(p.split()[-2:]) for p in inside.split(",") if p.split()[0] != "out"]
+        return [tuple(p.split()[-2:]) for p in inside.split(",") if p and p.split()[0] != "out"]
 
     @property
     def over_maps(self):

@@ -10,6 +10,7 @@ import moderngl
 import numpy as np
 
 from .glsl import Signature, assemble, of_model
+from .lib.random import ROW, next_pass
 from .model import Invalid, Param, declared
 
 PACKAGES = (
@@ -24,7 +25,6 @@ BLENDING = {
     "mean": (moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE),
 }
 _open = []  # the Gpu of `offscreen`, while there is one
-ROW = 1024  # width of the tables that `evaluate` uploads
 
 
 @contextmanager
@@ -248,11 +248,19 @@ class Gpu:
         return wi, weight
 
     def evaluate_model(self, model, signature, *arguments):
-        def source(call):
-            include = {"chunk.glsl": f'#include "models/{model.name()}.glsl"\n', "call.glsl": call}
-            return of_model("views/probe.frag", model, generated=include)
+        """Values of a function of a model, as `evaluate`; a stochastic one draws the next pass, as its twin does."""
+        include = [f"models/{model.name()}.glsl", "views/seeding_{seeding}.glsl"]
 
-        return self.evaluate(source, signature, *arguments, uniforms={"material": model})
+        def source(call):
+            chunk = "".join(f'#include "{path}"\n' for path in include)
+            return of_model("views/probe.frag", model, generated={"chunk.glsl": chunk, "call.glsl": call})
+
+        uniforms = {"material": model}
+        first = ""
+        if model.stochastic:
+            uniforms["pass"] = next_pass()
+            first = "seed_random(pass);"
+        return self.evaluate(source, signature, *arguments, uniforms=uniforms, first=first)
 
     def evaluate_chunk(self, path, signature, *arguments, slots=None):
         """Values of a function of a file in shaders/, such as ("lib/fresnel.glsl", "float F0(float eta, float k)", eta, k)."""
@@ -262,11 +270,12 @@ class Gpu:
 
         return self.evaluate(source, signature, *arguments)
 
-    def evaluate(self, source, signature, *arguments, uniforms=None):
+    def evaluate(self, source, signature, *arguments, uniforms=None, first=""):
         """Values of a GLSL function over tables of arguments, in float32.
 
         source(call) gives the Source of views/probe.frag around the generated `call`. Arguments broadcast like (..., n), a
-        float being n = 1 without the axis. Returns the value and then each `out` argument, as a list.
+        float being n = 1 without the axis. first: statements before the call. Returns a list of the value and then each `out`
+        argument.
         """
         function = Signature(signature)
         with np.errstate(under="ignore"):  # what float32 cannot hold is 0
@@ -278,7 +287,7 @@ class Gpu:
         count = int(np.prod(shape, dtype=int))
         width = min(ROW, max(count, 1))
         height = max(-(-count // width), 1)
-        program = self.program(source(function.call()))
+        program = self.program(source(function.call(first)))
         textures = {}
         for i, (column, kind) in enumerate(zip(columns, function.inputs, strict=True)):
             table = np.zeros((height * width, 4), dtype=kind.dtype)

@@ -5,13 +5,15 @@ by a line here, a new question by one Ladder in LADDERS.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from .lib import slot
 from .lib.common import vec
 from .model import Choice, declared
+from .models import MODELS
+from .models.multiscatter import MOST
 
 HALF = float(np.finfo(np.float16).max)
 """The largest half-float."""
@@ -29,7 +31,8 @@ def exact(state):
 class Method:
     """An answer.
 
-    changes   the parameters of the ladder's section that choose it; None: no state holds it
+    changes   the parameters of the ladder's section that choose it; None: no state holds it. Of a material "model" may be among
+              them: then the parameters that both models have are kept, and others take their defaults
     dtype     of what numbers are its values where that is the question: "f2", stored as half-floats by the shader; "f4", the
               shader's; "f8", numpy's; else "": errors are found in float64 and costs by the shader
     outside   outside(state): why it leaves its domain there, in a few words, or ""
@@ -66,21 +69,22 @@ class Ladder:
 
     def at(self, state, method):
         """The state with a method of this ladder in use."""
-        if self.section == "material":
-            return state.with_model(replace(state.model, **(method.changes or {})))
-        return state.with_view(self.section, **(method.changes or {}))
+        changes = dict(method.changes or {})
+        if self.section != "material":
+            return state.with_view(self.section, **changes)
+        cls = MODELS[changes.pop("model", state.model.name())]
+        kept = {name: getattr(state.model, name) for name in declared(cls) if name in declared(state.model)}
+        return state.with_model(cls(**kept | changes))
 
     def current(self, state):
         """The method that a state uses, or None if it is none of these."""
         at = state.model if self.section == "material" else state.views[self.section]
-        return next(
-            (
-                m
-                for m in self.methods
-                if m.changes is not None and all(getattr(at, k, None) == v for k, v in m.changes.items())
-            ),
-            None,
-        )
+        known = {"model": at.name()} | {name: getattr(at, name) for name in declared(at)}
+        return next((m for m in self.methods if m.changes is not None and m.changes.items() <= known.items()), None)
+
+    def stochastic(self, state):
+        """Whether some method's f is an estimate."""
+        return any(self.at(state, m).model.stochastic for m in self.methods)
 
 
 def of_choice(name, question, measures, options, applies=None, outside=None, own=None, choice=None):
@@ -97,6 +101,11 @@ def of_choice(name, question, measures, options, applies=None, outside=None, own
 
 def absorbs(state):
     return "k is not 0" if max(state.model.k) > 0 else ""
+
+
+def mirrors(model):
+    """Whether a facet's reflectance is Fresnel's at complex indices."""
+    return getattr(model, "facets", "conductor") == "conductor" and getattr(model, "facet", "lobe") == "lobe"
 
 
 def of_no_metal(state):
@@ -121,6 +130,16 @@ def surrounded(state):
 
 def not_of_ggx(state):
     return "visible normals of Beckmann have no caps: the same as visible" if state.model.ndf != "ggx" else ""
+
+
+def loses(state):
+    """Whether facets that are mirrors, and opaque, lose what meets more than one of them."""
+    model = state.model
+    return model.name() == "microfacet" or (model.name() == "multiscatter" and model.facets == "conductor")
+
+
+def walk(orders):
+    return {"model": "multiscatter", "facets": "conductor", "lowest": 1, "orders": orders}
 
 
 ESTIMATORS = {"light": "light", "bsdf": "BSDF", "mis": "MIS"}
@@ -148,12 +167,24 @@ LADDERS = {
             "f",
             ("correlated", "separable", "beta"),
         ),
+        Ladder(
+            "energy",
+            "How is light that meets more than one facet put back?",
+            "material",
+            "f",
+            (
+                *(Method(e, {"model": "microfacet", "energy": e}) for e in ("none", "turquin", "kulla_conty")),
+                Method("walk_2", walk(2)),
+                Method("walk", walk(MOST)),
+            ),
+            loses,
+        ),
         of_choice(
             "fresnel",
             "How exact must the reflectance of a facet be?",
             "f",
             ("constant", "schlick", "f82", "dielectric", "conductor", "spectral"),
-            applies=lambda model: model.fresnel != "one",
+            applies=lambda model: model.fresnel != "one" and mirrors(model),
             outside={"dielectric": absorbs, "spectral": of_no_metal},
             own={"spectral": of_spectrum},
         ),

@@ -159,6 +159,9 @@ class Model(Declared):
         """What fills the slots in the paths of its shader, by name: its choices."""
         return self.choices()
 
+    stochastic = False
+    """True: f returns an unbiased estimate, another one at each call."""
+
     def slopes(self):
         """(alpha_x, alpha_y): scale of the half vectors' slopes over which f varies; grids and quadrature follow it."""
         return (1.0, 1.0)
@@ -166,6 +169,10 @@ class Model(Declared):
     def index(self):
         """Index of the medium below over that above, by which lobes below bend; None for a material that transmits nothing."""
         return 1.0 if self.transmits else None
+
+    def parts(self):
+        """{name: model} of models whose f add up to this one's, where a diagram shows them each; else {}."""
+        return {}
 
     def exceptions(self):
         """Laws of measure/laws.py that this material is known to break, by name, each with the limit that it keeps instead."""

@@ -77,7 +77,7 @@ def test_reflection_and_transmission_are_the_first_order_of_the_walk():
     off = []
     for k, (ndf, alpha, eta, theta) in enumerate(WALKS):
         wo = direction(np.radians(theta), 0.5)
-        mean, error = first_order(ndf, alpha, eta, wo, n=200_000, seed=100 + k)
+        mean, error = first_order(ndf, alpha, eta, wo, n=100_000, seed=100 + k)
         value, own = shares(Dielectric(alpha=alpha, eta=eta, ndf=ndf), wo, 1e-5, 64)
         off.append((value[:, 0] - mean) / (error + own[:, 0]))
     print(f"largest {np.abs(off).max():.2f}, root mean square {np.sqrt(np.mean(np.square(off))):.2f}")

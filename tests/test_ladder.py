@@ -11,7 +11,7 @@ from brdf_explorer.state import Light, Material, State
 
 STATES = [State((Material("", MODELS["microfacet"](ndf=ndf, k=k)),)) for ndf in ("ggx", "beckmann") for k in (0.0, 3.0)]
 STATES.append(State((Material("", MODELS["diffuse"]()),), light=Light(environment="studio")))
-STATES += [State((Material("", MODELS[name]()),)) for name in ("nonspecular", "dielectric")]
+STATES += [State((Material("", MODELS[name]()),)) for name in ("nonspecular", "dielectric", "multiscatter")]
 
 
 @pytest.mark.parametrize("ladder", LADDERS.values(), ids=LADDERS)
@@ -26,9 +26,10 @@ def test_every_method_can_be_chosen_and_is_recognised(ladder):
 
 def test_ladders_of_choices_name_every_option():
     """A new option joins a ladder, or is `one`, which is not an answer to the ladder's question."""
-    for name in ("smith", "shadowing", "masking", "fresnel", "diffuse", "sampling", "nodes"):
+    for name in ("smith", "shadowing", "masking", "fresnel", "diffuse", "sampling", "nodes", "energy"):
         options = {o for model in MODELS.values() for n, d in declared(model).items() if n == name for o in d.options}
-        methods = [m for ladder in LADDERS.values() for m in ladder.methods if m.changes and list(m.changes) == [name]]
+        every = [m for ladder in LADDERS.values() for m in ladder.methods]
+        methods = [m for m in every if m.changes and name in m.changes and set(m.changes) <= {name, "model"}]
         assert {m.name for m in methods} == options - {"one"}
 
 
@@ -38,3 +39,17 @@ def test_reference_follows_the_domain():
     assert [dielectric.outside(s) != "" for s in STATES[:4]] == [False, True, False, True]
     gold = STATES[1].with_model(replace(STATES[1].model, spectrum="gold"))
     assert [ladder.reference(s).name for s in (STATES[0], STATES[1], gold)] == ["conductor", "conductor", "spectral"]
+
+
+def test_a_method_that_changes_the_model_keeps_what_both_have():
+    """And what one does not have takes its default: the walk's shadowing is correlated."""
+    ladder = LADDERS["energy"]
+    given = MODELS["microfacet"](
+        alpha=(0.3, 0.7), eta=1.3, k=2.0, ndf="beckmann", fresnel="schlick", shadowing="separable"
+    )
+    walked = ladder.at(State((Material("", given),)), ladder.methods[-1]).model
+    assert walked.name() == "multiscatter" and walked.stochastic
+    for name in ("alpha", "eta", "k", "ndf", "fresnel"):
+        assert getattr(walked, name) == getattr(given, name)
+    back = ladder.at(State((Material("", walked),)), ladder.methods[0]).model
+    assert back == MODELS["microfacet"](alpha=(0.3, 0.7), eta=1.3, k=2.0, ndf="beckmann", fresnel="schlick")

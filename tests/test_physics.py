@@ -8,7 +8,7 @@ import pytest
 from numpy.polynomial.legendre import leggauss
 from oracles.cases import CASES
 
-from brdf_explorer.lib import fresnel, slot
+from brdf_explorer.lib import fresnel, schlick, slot
 from brdf_explorer.lib.colormap import diverging, viridis
 from brdf_explorer.lib.common import PI, dot, length, normalize, vec
 from brdf_explorer.lib.spectrum import F_spectral
@@ -105,7 +105,7 @@ def test_weak_white_furnace(ndf, alpha):
 # --- models ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("cls", MODELS.values(), ids=MODELS)
+@pytest.mark.parametrize("cls", [cls for cls in MODELS.values() if not cls.stochastic], ids=lambda cls: cls.name())
 @np.errstate(under="ignore")
 def test_reciprocity(cls):
     rng = np.random.default_rng(1)
@@ -114,7 +114,8 @@ def test_reciprocity(cls):
     for choices, values in product([choices for c, choices in CASES if c is cls], shapes):
         model = cls(**values, **choices)
         forth, back = model.f(wo, wi), model.f(wi, wo)
-        assert np.all(np.abs(forth - back) <= 1e-12 * forth), model
+        limit = model.exceptions().get("reciprocity", 1e-12)
+        assert np.all(np.abs(forth - back) <= limit * np.maximum(forth, back)), model
 
 
 def excess(model, cosines=(0.02, 0.2, 0.7)):
@@ -260,14 +261,14 @@ def test_fresnel_along_the_normal():
     eta, k = ETA[:, None], K
     np.testing.assert_allclose(fresnel.F_conductor(1.0, eta, k), fresnel.F0(eta, k), rtol=1e-13)
     np.testing.assert_allclose(fresnel.F_dielectric(1.0, ETA), fresnel.F0(ETA, 0.0), rtol=1e-13)
-    np.testing.assert_allclose(fresnel.F_schlick(1.0, 0.3), 0.3)
+    np.testing.assert_allclose(schlick.F_schlick(1.0, 0.3), 0.3)
 
 
 def test_fresnel_grazing():
     off = ETA != 1
     np.testing.assert_allclose(fresnel.F_dielectric(0.0, ETA[off]), 1, rtol=1e-13)
     np.testing.assert_allclose(fresnel.F_conductor(0.0, ETA[:, None], K), 1, rtol=1e-13)
-    np.testing.assert_allclose(fresnel.F_schlick(0.0, 0.3), 1)
+    np.testing.assert_allclose(schlick.F_schlick(0.0, 0.3), 1)
 
 
 def test_fresnel_total_internal_reflection():
@@ -323,7 +324,7 @@ def test_fresnel_rises_towards_grazing_after_one_dip():
     "eta, k, error", [(1.5, 0.0, 0.036), (1.05, 0.0, 0.32), (3.5, 0.0, 0.17), (5.6, 1.2, 0.29)], ids=str
 )
 def test_schlick_error(eta, k, error):
-    off = np.abs(fresnel.F_schlick(COSINES, fresnel.F0(eta, k)) - fresnel.F_conductor(COSINES, eta, k))
+    off = np.abs(schlick.F_schlick(COSINES, fresnel.F0(eta, k)) - fresnel.F_conductor(COSINES, eta, k))
     assert off.max() == pytest.approx(error, abs=0.5 * 10 ** np.floor(np.log10(error) - 1))
     if eta == 1.5:
         assert np.degrees(np.arccos(COSINES[off.argmax()])) == pytest.approx(85, abs=0.5)
@@ -337,9 +338,9 @@ def test_schlick_error(eta, k, error):
 def test_f82_error(eta, k, error):
     """It meets the exact curve along the normal, at a cosine of 1/7 and at the horizon."""
     exact = [fresnel.F_conductor(c, eta, k) for c in (COSINES, 1 / 7)]
-    off = np.abs(fresnel.F_f82(COSINES, fresnel.F0(eta, k), exact[1]) - exact[0])
+    off = np.abs(schlick.F_f82(COSINES, fresnel.F0(eta, k), exact[1]) - exact[0])
     assert off.max() == pytest.approx(error, abs=0.5 * 10 ** np.floor(np.log10(error) - 1))
-    ends = fresnel.F_f82(np.array([1.0, 1 / 7, 0.0]), fresnel.F0(eta, k), exact[1])
+    ends = schlick.F_f82(np.array([1.0, 1 / 7, 0.0]), fresnel.F0(eta, k), exact[1])
     np.testing.assert_allclose(ends, [fresnel.F0(eta, k), exact[1], 1.0], rtol=1e-13)
     if eta == 1.5:
         assert np.degrees(np.arccos(COSINES[off.argmax()])) == pytest.approx(68, abs=0.5)
@@ -348,7 +349,7 @@ def test_f82_error(eta, k, error):
 def test_f82_is_a_share():
     """Indices next to 1 would make it negative, and those below 1 larger than 1."""
     eta = np.concatenate([ETA, np.linspace(1.0, 1.1, 50)])[:, None]
-    values = fresnel.F_f82(COSINES[:, None, None], fresnel.F0(eta, K), fresnel.F_conductor(1 / 7, eta, K))
+    values = schlick.F_f82(COSINES[:, None, None], fresnel.F0(eta, K), fresnel.F_conductor(1 / 7, eta, K))
     assert values.min() == 0 and values.max() <= 1 + 1e-15
 
 
@@ -396,7 +397,7 @@ def test_a_spectrum_without_features_is_its_index():
 def test_schlick_knows_no_total_internal_reflection():
     eta = 1 / 1.5
     critical = np.sqrt(1 - eta**2)
-    assert 1 - fresnel.F_schlick(critical, fresnel.F0(eta, 0.0)) == pytest.approx(0.96, abs=5e-3)
+    assert 1 - schlick.F_schlick(critical, fresnel.F0(eta, 0.0)) == pytest.approx(0.96, abs=5e-3)
 
 
 # --- fits and roundings ----------------------------------------------------------------------------------------------

@@ -7,6 +7,7 @@ from scipy.stats import binomtest
 
 from brdf_explorer.lib import slot
 from brdf_explorer.lib.common import HORIZON
+from brdf_explorer.lib.random import seeded
 from brdf_explorer.measure.adversary import above
 from brdf_explorer.measure.albedo import albedo_with_error, integral
 from brdf_explorer.measure.grid import direction, grid, place, spread
@@ -39,7 +40,8 @@ SAMPLERS = samplers()
 
 
 def shapes(cls, choices):
-    """The model at the alphas, where it has them."""
+    """The model at the alphas, where it has them. A walk need not be a long one to show where it is sent."""
+    choices = choices | ({"orders": 2} if cls.stochastic else {})
     alphas = ALPHAS[1:2] if cls.name() in SLOW else ALPHAS
     return [cls(alpha=a, **choices) if "alpha" in cls.__dataclass_fields__ else cls(**choices) for a in alphas]
 
@@ -57,7 +59,10 @@ def least(tests):
 
 def test_samplers_are_told_apart():
     assert {c["sampling"] for cls, c in SAMPLERS if cls is Microfacet and c["ndf"] == "ggx"} == set(SAMPLING)
-    assert len([c for cls, c in SAMPLERS if cls is Microfacet and c["ndf"] == "beckmann"]) == 2  # ndf and visible
+    alone = [
+        c for cls, c in SAMPLERS if cls is Microfacet and c["energy"] != "kulla_conty"
+    ]  # which has a lobe of its own
+    assert len([c for c in alone if c["ndf"] == "beckmann"]) == 2  # ndf and visible
 
 
 @pytest.mark.parametrize("twin", ["float64", "float32"])
@@ -81,7 +86,7 @@ def test_pdf_integrates_to_the_share_above_the_horizon(cls, choices):
         for wo in viewers():
             mass = integral(lambda o, i, m=model: m.pdf(o, i)[..., None], wo, model.slopes(), index=model.index())
             # where facets refract on edge, pdf has a kink or ends by a step: more than 10 000 samples tell is enough
-            known, binned = (1e-3, 3e-3) if model.transmits else (1e-8, 1e-6)
+            known, binned = (1e-3, 3e-3) if model.transmits else (1e-8, 5e-6)
             assert mass.error[0] < known and mass.value[0] < 1 + 1e-9
             assert bins(model, wo).sum() == pytest.approx(mass.value[0], abs=binned)
             height = model.sample_f(wo, rng.random((10_000, 2)))[0][:, 2]
@@ -121,11 +126,13 @@ def test_weight_is_f_cos_over_pdf(cls, choices):
     wo, u = above(rng, 2000), rng.random((2000, 2))
     with np.errstate(under="ignore"):
         for model in [material(cls, choices, rng), *corners(cls, choices)]:
-            wi, weight = model.sample_f(wo, u)
+            with seeded(1):
+                wi, weight = model.sample_f(wo, u)
             pdf = model.pdf(wo, wi)
-            height = np.abs(wi[:, 2]) if cls.transmits else wi[:, 2]
+            height = np.abs(wi[:, 2]) if model.transmits else wi[:, 2]
             known = (pdf > 1e-200) & (height > 1e-6)
-            expected = model.f(wo, wi)[known] * height[known, None] / pdf[known, None]
+            with seeded(1):
+                expected = model.f(wo, wi)[known] * height[known, None] / pdf[known, None]
             np.testing.assert_allclose(weight[known], expected, rtol=1e-11, atol=1e-290)  # below, float64 runs out
             assert np.all(weight[height <= HORIZON] == 0)
 

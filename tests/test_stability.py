@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracles.cases import CASES, case_label, corners, material
+from oracles.cases import CASES, case_label, corners, material, typed
 
 from brdf_explorer.glsl import of_model
 from brdf_explorer.measure.adversary import adversarial
@@ -26,8 +26,7 @@ def extremes(cls, choices, rng, count=8):
         for name, p in declared(cls, Param).items():
             special = [p.low, p.high, 1.0] if p.low <= 1.0 <= p.high else [p.low, p.high]
             near = [v for v in (1 - 1e-7, 1 + 1e-7) if p.low <= v <= p.high]
-            values = tuple(float(v) for v in rng.choice(special + near, p.size))
-            drawn[name] = values if p.size > 1 else values[0]
+            drawn[name] = typed(p, rng.choice(special + near, p.size))
         found.append(cls(**choices, **drawn))
     return found + [material(cls, choices, rng) for _ in range(2)]
 
@@ -87,6 +86,8 @@ def test_float32_is_finite_and_not_negative(gpu, cls, choices):
 
 def numbers(p):
     """Values in a parameter's range, with its ends, 1, and their neighbours."""
+    if isinstance(p.default, int):
+        return st.integers(p.low, p.high)
     ends = [p.low, p.high] + [v for v in (1.0, np.nextafter(1.0, 0), np.nextafter(1.0, 2)) if p.low <= v <= p.high]
     one = st.one_of(st.sampled_from([float(v) for v in ends]), st.floats(p.low, p.high))
     return one if p.size == 1 else st.tuples(*[one] * p.size)

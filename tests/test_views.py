@@ -88,7 +88,7 @@ def test_plane_runs_from_horizon_to_horizon_through_the_mirror_direction(gpu):
 
 def test_slice_of_float32_and_float64_agree(gpu):
     state = State(materials=(Material("a", MICROFACET(alpha=1e-3)), Material("b", DIFFUSE())))
-    for _, _, _, f32, f64 in state.views["polar"].slices(gpu, state):
+    for _, _, _, f32, f64, _ in state.views["polar"].slices(gpu, state):
         np.testing.assert_allclose(f32, f64, rtol=1e-4, atol=1e-6 * f64.max())
 
 

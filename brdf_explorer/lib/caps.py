@@ -18,10 +18,12 @@ def sum_with_cap(v, u, cut):
     cosine = azimuth_x * np.cos(phi) + azimuth_y * np.sin(phi)
     sine = azimuth_x * np.sin(phi) - azimuth_y * np.cos(phi)
     low = cut * z
-    extent = 1 + z - low
+    wide = 1 + np.abs(z)
+    narrow = sin_o * sin_o / wide
+    extent = np.where(z < 0, narrow, wide) - low
     height = (1 - u1) * extent + low
     q = u1 * extent
-    t = sin_o * sin_o / (1 + z)
+    t = np.where(z < 0, wide, narrow)
     r = np.sqrt(q * (t + height))
     excess = quotient(height * (q - t), r + sin_o)
     opposite = excess * cosine + sin_o * sine * sine / (1 - np.minimum(cosine, 0.0))

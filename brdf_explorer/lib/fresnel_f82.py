@@ -6,7 +6,8 @@ Largest absolute error: 0.028 for glass (eta = 1.5, at 68 degrees), 0.058 at eta
 
 import numpy as np
 
-from .fresnel import F0, F_conductor, F_f82
+from .fresnel import F0, F_conductor
+from .schlick import F_f82
 
 
 def F(c, eta, k):

@@ -6,7 +6,8 @@ Largest absolute error: 0.036 for glass (eta = 1.5, at 85 degrees), 0.32 at eta 
 
 import numpy as np
 
-from .fresnel import F0, F_schlick
+from .fresnel import F0
+from .schlick import F_schlick
 
 
 def F(c, eta, k):

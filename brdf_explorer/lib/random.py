@@ -1,5 +1,7 @@
 """Random numbers by pixel and pass, equal to those of the shaders to the bit: numpy uint32 throughout."""
 
+from contextlib import contextmanager
+
 import numpy as np
 
 from .common import vec
@@ -36,6 +38,52 @@ def pcg3d(v):
 def unit_interval(bits):
     """The highest 24 bits as a number in [0, 1)."""
     return (bits >> np.uint32(8)) * 2.0**-24
+
+
+ROW = 1024
+"""Rows of a table that lie beside each other where views/probe.frag evaluates it: a row's pixel is (row % ROW, row // ROW)."""
+_next = [0]  # the pass of the next call that draws
+
+
+@contextmanager
+def seeded(seed):
+    """Within it calls of stochastic functions draw the passes seed, seed + 1 ...: the same numbers each time, in both twins."""
+    before, _next[0] = _next[0], seed
+    try:
+        yield
+    finally:
+        _next[0] = before
+
+
+def next_pass():
+    """The pass that a call draws: 0 for the first of a process, and then another one for each, so that calls are independent."""
+    _next[0] = (_next[0] + 1) % 2**32
+    return (_next[0] - 1) % 2**32
+
+
+def random_states(count, index):
+    """States (count, 3) of the generator of formulas that draw numbers of their own, for Draws.
+
+    As the shaders seed theirs by pixel and pass `index`, of which all bits are turned, so that none is a stream of random2.
+    """
+    row = np.arange(count, dtype=np.uint32)
+    return vec(row % np.uint32(ROW), row // np.uint32(ROW), np.uint32(~np.uint32(index)))
+
+
+class Draws:
+    """The generators of walks that are under way, one for each: states (n, 3), which drawing moves on."""
+
+    def __init__(self, states):
+        self.states = states
+
+    def drawn(self):
+        """Three numbers in [0, 1) for each walk, (n, 3)."""
+        self.states = pcg3d(self.states)
+        return unit_interval(self.states)
+
+    def keep(self, which):
+        """Go on with those walks alone that the mask (n,) has."""
+        self.states = self.states[which]
 
 
 def third(u):

@@ -22,33 +22,40 @@ def visible_slope_beckmann(u, sin_o, cos_o):
     u, sin_o, cos_o = np.broadcast_arrays(u, sin_o, cos_o)
     half_inv_sqrt_pi = 0.5 / np.sqrt(PI)
     low = np.full(u.shape, -6.0)
-    high = np.minimum(cos_o / np.maximum(sin_o, 1e-9), 6.0)
+    high = np.clip(cos_o / np.maximum(sin_o, 1e-9), -6.0, 6.0)
     head = 0.5 * cos_o + half_inv_sqrt_pi * sin_o
-    tail = sin_o * exp_precise(-high * high) * h_beckmann(high)
-    area = cos_o + tail
-    upper = u * area > head
+    tail = sin_o * exp_precise(-high * high) * h_beckmann(np.abs(high))
+    area = np.maximum(cos_o, 0.0) + tail
+    upper = (cos_o > 0) & (u * area > head)
     low = np.where(upper, 0.0, low)
     high = np.where(upper, high, np.minimum(high, 0.0))
     x = 0.5 * (low + high)
+    found = x.copy()
+    left = np.arange(x.size)  # of the flat arrays, those whose root is not found yet
+    rows = [np.ravel(a) for a in (x, low, high, u, sin_o, cos_o, tail, area, upper)]
     for _ in range(60):
+        x, low, high, p, s, c, tail, area, upper = rows
         gauss = exp_precise(-x * x)
-        half_erfcx = 0.5 * cos_o * erfcx_precise(np.abs(x))
-        above = (1 - u) * area - tail - gauss * (half_erfcx - half_inv_sqrt_pi * sin_o)
-        below = gauss * (half_erfcx + half_inv_sqrt_pi * sin_o) - u * area
+        half_erfcx = 0.5 * c * erfcx_precise(np.abs(x))
+        above = (1 - p) * area - tail - gauss * (half_erfcx - half_inv_sqrt_pi * s)
+        below = gauss * (half_erfcx + half_inv_sqrt_pi * s) - p * area
         error = np.where(upper, above, below)
         high = np.where(error > 0, x, high)
         low = np.where(error > 0, low, x)
-        density = (cos_o - x * sin_o) * gauss * 2 * half_inv_sqrt_pi
+        density = (c - x * s) * gauss * 2 * half_inv_sqrt_pi
         step = np.where(density > 0, x - quotient(error, np.maximum(density, 0.0)), low - 1)
         step = np.where((step > low) & (step < high), step, 0.5 * (low + high))
-        done = np.abs(step - x) <= 1e-15 * (1 + np.abs(x))
-        x = step
-        if np.all(done):
+        found.flat[left] = step
+        going = np.abs(step - x) > 1e-15 * (1 + np.abs(x))
+        left = left[going]
+        if not left.size:
             break
-    return np.where(u == 0, -6.0, x)
+        rows = [a[going] for a in (step, low, high, *rows[3:])]
+    return np.where(u == 0, -6.0, found)
 
 
 def sample_wm(wo, u, alpha):
+    """A visible normal; wo may lie below the horizon."""
     x, y, z = split(wo)
     ax, ay = split(alpha)
     u0, u1 = split(u)

@@ -9,6 +9,7 @@ from .ndf_ggx import visible_area
 
 
 def sample_wm(wo, u, alpha):
+    """A visible normal; wo may lie below the horizon."""
     x, y, z = split(wo)
     ax, ay = split(alpha)
     sum_x, sum_y, height = split(sum_with_cap(normalize(vec(ax * x, ay * y, z)), u, 0.0))

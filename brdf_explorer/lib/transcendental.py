@@ -8,6 +8,11 @@ def exp_precise(x):
         return np.exp(x)
 
 
+def expm1_precise(x):
+    """exp(x) - 1 for x >= 0."""
+    return np.expm1(x)
+
+
 def log_precise(x):
     """Natural logarithm of x > 0."""
     return np.log(x)

@@ -6,6 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from .grid import Grid, grid, sides, spread
+from .noise import Running
+
+NODES, REPEATS = 24, 16
+"""Rays, and directions a ray, of a grid of estimates, and how many of these are averaged."""
 
 
 class Integral(NamedTuple):
@@ -53,8 +57,31 @@ def shares(model, wo, tolerance=1e-10, most=512):
 def _integrals(function, model, wo, n, tolerance, most):
     """The Integral of function(wo, wi) (..., n) for viewers wo (..., 3): (..., n)."""
     wo = np.asarray(wo, dtype=float)
-    found = [integral(function, w, model.slopes(), tolerance, most, model.index()) for w in wo.reshape(-1, 3)]
+    if model.stochastic:
+        found = [_averaged(function, w, n, model) for w in wo.reshape(-1, 3)]
+    else:
+        found = [integral(function, w, model.slopes(), tolerance, most, model.index()) for w in wo.reshape(-1, 3)]
     return Integral(*(np.array(part).reshape(*wo.shape[:-1], n) for part in zip(*found, strict=True)))
+
+
+def _averaged(function, wo, n, model):
+    """The Integral of a function of estimates for one wo (3,): its mean over REPEATS grids of NODES rays, whose places in their
+    cells are drawn, with one estimate for each direction. So it has no bias, and its error is the standard error.
+    """
+    rng, running, total = np.random.default_rng(1), Running(), np.zeros((REPEATS, n))
+    for side in sides(wo, model.slopes(), model.index()):
+        grids, turns = [], []
+        for _ in range(REPEATS):
+            fraction, t = (np.arange(NODES) + rng.random((2, NODES))) / NODES
+            psi, turn = spread(side.wo, side.alpha, fraction)
+            grids.append(grid(side.wo, side.alpha, t, psi))
+            turns.append(turn)
+        wi, density = (np.stack([getattr(g, name) for g in grids]) for name in ("wi", "density"))
+        with np.errstate(under="ignore"):  # in the tails of a density
+            weight = density * np.stack(turns)[..., None] / NODES**2
+            total += np.einsum("rptc,rpt->rc", function(wo, side.turned(wi)), weight)
+    running.add(total)
+    return Integral(*running.mean())
 
 
 def integral(function, wo, alpha, tolerance=1e-10, most=512, index=None):

@@ -35,12 +35,14 @@ class Work:
     count   what its seconds are divided by: evaluations, or 1
     bare    other Work whose seconds are subtracted, or None
     key     what it is, if it does not draw; a draw is known by its shaders' text, its size and format
+    about   what else a draw is known by: a material whose parameters say how long its f takes
     """
 
     run: Callable
     count: float = 1.0
     bare: "Work | None" = None
     key: tuple = ()
+    about: object = None
 
 
 class Cost(NamedTuple):
@@ -82,7 +84,7 @@ def costs(gpu, works, least=None, most=None):
     least, most = least or LEAST, most or MOST
     keys = {}
     for name, work in works.items():
-        keys[name] = work.key or drawn_by(gpu, work.run)
+        keys[name] = work.key or (drawn_by(gpu, work.run), work.about)
         yield {}
     same = {key: works[name] for name, key in keys.items()}  # methods whose shaders are one are timed once
     group = frozenset(same)
@@ -147,13 +149,15 @@ def fill(gpu, size=SIZE, dtype="f4"):
 def evaluation(gpu, model, bare, size=SIZE, dtype="f4"):
     """The Work of one evaluation of f by the shader, less the `fill` of the same size and format."""
     uniforms = {"material": model, "size": tuple(map(float, size))}
-    return Work(drawing(gpu, of_model("views/evaluate.frag", model), uniforms, size, dtype), size[0] * size[1], bare)
+    run = drawing(gpu, of_model("views/evaluate.frag", model), uniforms, size, dtype)
+    return Work(run, size[0] * size[1], bare, about=model if model.stochastic else None)
 
 
 def sample(gpu, model, bare, size=SIZE):
     """The Work of drawing one direction by the shader, with its weight, less the `fill` of the same size."""
     uniforms = {"material": model, "size": tuple(map(float, size))}
-    return Work(drawing(gpu, of_model("views/sample.frag", model), uniforms, size, "f4"), size[0] * size[1], bare)
+    run = drawing(gpu, of_model("views/sample.frag", model), uniforms, size, "f4")
+    return Work(run, size[0] * size[1], bare, about=model if model.stochastic else None)
 
 
 def one_pass(gpu, state, size):
@@ -164,7 +168,7 @@ def one_pass(gpu, state, size):
         next(state.views["sphere"].pictures(own, state, size))
         gpu.ctx.finish()
 
-    return Work(run)
+    return Work(run, about=state.model if state.model.stochastic else None)
 
 
 def in_numpy(model, pairs=PAIRS):

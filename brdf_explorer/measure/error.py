@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..lib.common import quotient
+from ..lib.random import seeded
 from ..lib.srgb import luminance
 from ..model import Invalid
 from .albedo import quadrature
@@ -22,6 +23,8 @@ RAYS = 64
 """Rays about the mirror direction, and directions a ray, of each viewer."""
 MATTERS = 1e-3
 """f cos of the reference, over its largest for a viewer, from which on relative errors count."""
+ESTIMATES = 4
+"""Of a stochastic f for each direction; a metric of it holds their noise."""
 ROUNDING = 1e-12
 """What rounding in float64 may add to an error of values: the limit of the law of reciprocity."""
 
@@ -66,16 +69,23 @@ def spread(model, alpha, n=RAYS):
     return float(np.sqrt(max(np.mean(squares), 0.0)))
 
 
-def values(evaluator, alpha, n=RAYS, wo=None, index=None):
+def values(evaluator, alpha, n=RAYS, wo=None, index=None, seed=0, estimates=ESTIMATES):
     """The Values of an evaluator, which has f(wo, wi), for slopes of scale alpha (2,); methods are compared at one alpha.
 
     wo: other viewers (viewers, 3) than those of the laws. index: as Model.index, for both sides of the surface.
+    A stochastic f is the mean of some estimates, by the same random numbers for all methods, so that these differ by what they do
+    and not by chance; another seed gives independent ones.
     """
     wo = viewers() if wo is None else wo
     grids, weight = zip(*(quadrature(w, alpha, n, index) for w in wo), strict=True)
     wi = np.stack([g.wi for g in grids])
     wo = wo[:, None, None]
-    f, back = (np.asarray(evaluator.f(*pair), dtype=float) for pair in ((wo, wi), (wi, wo)))
+    repeats = estimates if getattr(evaluator, "stochastic", False) else 1
+    with seeded(seed):
+        f, back = (
+            sum(np.asarray(evaluator.f(*pair), dtype=float) for _ in range(repeats)) / repeats
+            for pair in ((wo, wi), (wi, wo))
+        )
     back = back * np.where(wi[..., 2:] < 0, (index or 1.0) ** -2.0, 1.0)
     return Values(f, back, np.abs(wi[..., 2]), np.stack(weight))
 
@@ -194,19 +204,21 @@ class Metric:
     """A measure of error.
 
     compares "values" or "pictures": function(found, reference) of two of these -> float; "samples": function(model, alpha, n).
+    extreme  whether it is the largest of many values, not a mean, which noise makes larger
     """
 
     title: str
     compares: str
     function: Callable
     unit: str = ""
+    extreme: bool = False
 
 
 METRICS = {
     "rmse": Metric("relative RMSE of f cos θ", "values", rmse),
-    "maximum": Metric("largest relative error of f", "values", largest),
+    "maximum": Metric("largest relative error of f", "values", largest, extreme=True),
     "energy": Metric("largest error of albedo", "values", energy),
-    "reciprocity": Metric("largest error of reciprocity", "values", reciprocity),
+    "reciprocity": Metric("largest error of reciprocity", "values", reciprocity, extreme=True),
     "spread": Metric("relative standard error of one sample", "samples", spread),
     "picture": Metric("relative RMSE of the sphere", "pictures", picture_rmse),
     "brightness": Metric("relative error of the sphere's mean", "pictures", picture_energy),

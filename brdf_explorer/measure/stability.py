@@ -43,8 +43,9 @@ STEPS = (1, -1, 10, -10)
 """Changes of an argument that its condition is taken from, in UNITs. Ten of them see a kink next to it, as at total reflection,
 where a formula that rounds more than once may end on the other side."""
 PARTS = {"pdf_wi", "weight_wi", "facets", "facet_sharpness", "facet_scale", "facet_wi", "facet_pdf"}
-PARTS |= {"refracted", "upward", "apart_from_one", "third"}
-"""Functions that are no rows: they are all of f, pdf and sample_f but for what has a row, or round nothing."""
+PARTS |= {"refracted", "upward", "apart_from_one", "third", "flight", "exp_precise"}
+"""Functions that are no rows: they are all of f, pdf and sample_f but for what has a row, or round nothing; and a depth, below 0
+where a ray leaves."""
 COLORS = ("f", "F", "sample_f", "diffuse_f")
 """Functions whose components are compared each; other vectors are directions, compared relative to their length."""
 
@@ -125,10 +126,10 @@ def reflected(slope, share=1.0):
 
 
 def near(signs, off):
-    """Directions next to wo with the signs of its components changed, turned by `off`; below wo's azimuth at any height."""
+    """Directions next to wo, or a ray w, with the signs of its components changed, turned by `off`; opposite at any height."""
 
     def draw(u, size, drawn):
-        w = drawn["wo"] * signs
+        w = drawn.get("wo", drawn.get("w")) * signs
         turn = off(np.abs(2 * u - 1), 1, drawn)[:, 0] * np.where(u[:, 0] < 0.5, -1, 1)
         if np.all(np.asarray(signs) == (-1, -1, 1)):
             z = np.minimum(w[:, 2] * 10.0 ** (4 * u[:, 1] - 2), 0.5)
@@ -218,6 +219,17 @@ ORDINARY = {
     "Lambda_o": decades(1e-3, 10.0),
     "Lambda_i": decades(1e-3, 10.0),
     "density": decades(1e-3, 1e3),
+    "lost_o": decades(1e-8, 0.7),
+    "lost_i": decades(1e-8, 0.7),
+    "lost_mean": decades(1e-8, 0.7),
+    "F0": linear(0.02, 1.0),
+    "F": linear(0.02, 1.0),
+    "F_1": linear(0.02, 1.0),
+    "F_2": linear(0.02, 1.0),
+    "F_3": linear(0.02, 1.0),
+    "depth": decades(1e-2, 10.0),
+    "area": linear(0.05, 1.0),
+    "hidden": decades(1e-3, 1.0),
     "wt": through(decades(1e-2, 4.0)),
     "cos_o": linear(0.05, 1.0),
     "cos_t": linear(0.05, 1.0),
@@ -511,6 +523,8 @@ def subjects(model):
     """The Subjects of a material: the functions of chunks that its shader calls, and its own."""
     cls, path = type(model), f"models/{model.name()}.glsl"
     text = read(path, [])
+    for include in re.findall(r'#include "(models/[^"]+)"', text):
+        text += read(filled(include, model.choices(), path), [])
     called = set(re.findall(r"\b(\w+)\(", text))
     found = []
     for include in re.findall(r'#include "(lib/[^"]+)"', text):
@@ -520,7 +534,9 @@ def subjects(model):
             there = hasattr(slot(file[4:-5]), function.name)
             if there and function.name in called - PARTS - {s.name for s in found}:
                 found.append(_chunk(cls, file, function, chosen))
-    return found + [_of_model(cls, model, function) for function in functions(path)]
+    # of an estimate one value says nothing; its parts have rows, and so have those of a pdf of both sides
+    own = ("f", "pdf", "sample_f") if not model.stochastic else () if model.transmits else ("pdf",)
+    return found + [_of_model(cls, model, function) for function in functions(path) if function.name in own]
 
 
 def _fillings(include, model, choice):
@@ -551,12 +567,15 @@ def _chunk(cls, file, function, choices):
 def _of_model(cls, model, function):
     """A function of a model, its parameters made arguments."""
     params = declared(cls, Param)
-    kinds = {name: kind for kind, name in function.arguments} | {name: p.glsl for name, p in params.items()}
+    whole = {name for name, p in params.items() if p.glsl == "int"}  # a table holds no whole numbers
+    kinds = {name: kind for kind, name in function.arguments}
+    kinds |= {name: "float" if name in whole else p.glsl for name, p in params.items()}
     out = re.search(r", (out \w+ \w+)\)", function.signature)
     takes = ", ".join(f"{kind} {name}" for name, kind in kinds.items()) + (f", {out[1]}" if out else "")
     gives = ", ".join([name for _, name in function.arguments] + ([out[1].split()[-1]] if out else []))
     signature = f"{function.signature.split()[0]} at({takes})"
-    body = f"{signature} {{\n  material = Material({', '.join(params)});\n  return {function.name}({gives});\n}}\n"
+    made = ", ".join(f"int({name})" if name in whole else name for name in params)
+    body = f"{signature} {{\n  material = Material({made});\n  return {function.name}({gives});\n}}\n"
     variable = params_glsl("material", cls).replace("uniform Material", "Material")
 
     def source(call, form):
@@ -807,7 +826,8 @@ SWAPPED = {"wo": "wi", "wi": "wo", "Lambda_o": "Lambda_i", "Lambda_i": "Lambda_o
 
 
 def reciprocity(gpu, subject, form, batch):
-    """Largest relative change under an exchange of light and viewer, where f or G2 is well conditioned, and at which point."""
+    """Largest relative change under an exchange of light and viewer, beyond that of the float64 value, where f or G2 is well
+    conditioned, and at which point."""
     if subject.name not in ("f", "G2"):
         return 0.0, 0
     arguments = {name: batch.arguments[SWAPPED.get(name, name)] for name in batch.arguments}
@@ -823,7 +843,9 @@ def reciprocity(gpu, subject, form, batch):
     asked = np.flatnonzero(np.max(change, axis=1) > LIMIT)
     if len(asked):  # of these the condition may not be known yet
         condition = subject.condition({name: v[asked] for name, v in batch.arguments.items()})
-        change[asked] = np.where(condition * UNIT > WELL, 0.0, change[asked])
+        exact = subject.exact({name: v[asked] for name, v in arguments.items()})
+        own = np.abs(batch.exact[asked] - exact) / np.maximum(size, floor)[asked]
+        change[asked] = np.where(condition * UNIT > WELL, 0.0, np.maximum(change[asked] - own, 0.0))
     change = np.max(change, axis=1)
     k = int(np.argmax(change))
     return float(change[k]), k

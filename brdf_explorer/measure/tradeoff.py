@@ -12,6 +12,7 @@ from ..model import Invalid, Model
 from . import cost
 from .cost import Cost
 from .error import METRICS, RAYS, ROUNDING, Measured, Values, values
+from .laws import Shader as OnGpu
 from .laws import viewers
 
 NATURAL = {"f": "rmse", "numbers": "rmse", "samples": "spread", "picture": "picture"}
@@ -26,6 +27,11 @@ PASSES = 64
 """Passes of each, under an environment, if the methods do not differ in them."""
 FIRST = 0.7
 """Seconds after which costs come before the rest of the errors."""
+PARTS, WALKS, TOGETHER = 16, 8, 4
+"""Of a model whose f is an estimate: independent tables of values by half the rays, estimates that are averaged in each, and how
+many of these are made between two yields."""
+ROUGH = 4
+"""Tables of which first errors are found."""
 KEPT = 200
 """Measurements of errors that are kept."""
 
@@ -162,6 +168,8 @@ def senseless(ladder, state, metric):
     """Why a metric says nothing about a ladder for a state, in a sentence, or ""."""
     if not ladder.applies(state):
         return "The question does not arise for this material in this light."
+    if METRICS[metric].extreme and ladder.stochastic(state):
+        return f"f of one of its methods is an estimate: {metric} would be the largest of its noise. Choose rmse or energy."
     if METRICS[metric].compares in JUDGED[ladder.measures]:
         return ""
     about = {
@@ -244,10 +252,15 @@ def kept_errors(gpu, ladder, state, metric):
         *((at.light, at.views["sphere"]) if METRICS[metric].compares == "pictures" else ()),
     )
     if key not in gpu.errors:
-        errors = {"values": value_errors, "samples": sample_errors, "pictures": picture_errors}[
-            METRICS[metric].compares
-        ]
-        for found in errors(gpu, ladder, state, METRICS[metric]):
+        kind = METRICS[metric].compares
+        kind = "estimates" if kind == "values" and ladder.measures == "f" and ladder.stochastic(state) else kind
+        errors = {
+            "values": value_errors,
+            "estimates": estimate_errors,
+            "samples": sample_errors,
+            "pictures": picture_errors,
+        }
+        for found in errors[kind](gpu, ladder, state, METRICS[metric]):
             yield found
         gpu.errors[key] = found
         if len(gpu.errors) > KEPT:
@@ -294,6 +307,71 @@ def evaluator(gpu, model, method):
     return Shader(gpu, model, method.dtype) if method.dtype in ("f2", "f4") else model
 
 
+def estimate_errors(gpu, ladder, state, metric):
+    """As `value_errors` where f of some methods is an estimate: of these, means of PARTS x WALKS by the shader, in float32.
+
+    A square of a difference holds that of the noise, which falls as 1 / PARTS: the jackknife takes it away, and says how
+    uncertain the rest is. The reference's own error is half of that of one half of its tables from the other.
+    """
+    reference = ladder.reference(state)
+    models = {m.name: ladder.at(state, m).model for m in ladder.methods}
+    alpha, index = models[reference.name].slopes(), models[reference.name].index()
+    tables, found = {name: [] for name in models}, {}
+    for n in range(1, PARTS + 1):
+        for name, model in models.items():
+            on, count = (OnGpu(gpu, model), WALKS // TOGETHER) if model.stochastic else (model, int(n == 1))
+            means = Values(0.0, 0.0, 0.0, 0.0)
+            for k in range(count):
+                seed = 2 * (WALKS * n + TOGETHER * k)  # of f there and back
+                means = sum_of(means, values(on, alpha, RAYS // 2, None, index, seed, TOGETHER), 1 / count)
+                yield found
+            tables[name] += [means] * (count > 0)
+        if n in (ROUGH, PARTS):
+            own = tables[reference.name]
+            for name in models:
+                if name == reference.name:
+                    halves = jackknife(metric, own[::2], own[1::2])
+                    found = found | {name: Measured(0.0, 0.5 * (halves.value + halves.error))}
+                else:
+                    found = found | {name: jackknife(metric, tables[name], own)}
+                yield found
+
+
+@np.errstate(under="ignore")  # in the tails of a density
+def sum_of(a, b, share):
+    """Values a + share b."""
+    return Values(*(getattr(a, n) + share * getattr(b, n) for n in Values.__dataclass_fields__))
+
+
+@np.errstate(under="ignore")
+def mean_without(tables, k):
+    """The mean of Values without the k-th; of one alone that one."""
+    kept = [table for i, table in enumerate(tables) if i != k] if len(tables) > 1 else tables
+    return Values(*(np.mean([getattr(t, n) for t in kept], axis=0) for n in Values.__dataclass_fields__))
+
+
+def jackknife(metric, found, reference):
+    """The error Measured between means of Values: its square less what noise adds, and the standard error of that.
+
+    Quenouille 1956 and Tukey 1958: of n tables, n times the square from all less n - 1 times the mean of those without one.
+    """
+    n = max(len(found), len(reference))
+
+    def square(k):
+        return metric.function(mean_without(found, k), mean_without(reference, k)) ** 2
+
+    whole, less = square(None), np.array([square(k) for k in range(n)])
+    value = max(n * whole - (n - 1) * less.mean(), 0.0)
+    return root_of(value, np.sqrt((n - 1) / n * np.sum((less - less.mean()) ** 2)))
+
+
+def root_of(square, error):
+    """The root of a square with a standard error, Measured: where 0 is within that, the error is as large as the root."""
+    value = np.sqrt(square)
+    above, below = np.sqrt(square + error) - value, value - np.sqrt(max(square - error, 0.0))
+    return Measured(float(value), float(max(above, below)) + ROUNDING)
+
+
 def joined(parts):
     """Values of several viewers as one."""
     return Values(*(np.concatenate([getattr(p, name) for p in parts]) for name in Values.__dataclass_fields__))
@@ -316,11 +394,13 @@ def picture_errors(gpu, ladder, state, metric):
     """On spheres of SIDE pixels with the same random numbers.
 
     Where methods have as many passes the own error is the change from half of them. Where they differ in that, it is the error
-    of the reference after half of its own, which is its standard error: the two halves are independent.
+    of the reference after half of its own, which is its standard error: the two halves are independent. Where f is an estimate,
+    squares after half and after all tell what noise adds: this is taken away, and what is left of it is the own error.
     """
     state = state.with_view("sphere", background="plain", samples=PASSES, noise=1e-6)
     reference = ladder.reference(state)
     differ = "samples" in (reference.changes or {})
+    noisy = metric is METRICS["picture"] and ladder.stochastic(state)
     kept = {}  # name -> pictures after half of the passes and after all
 
     def draw(method):
@@ -338,6 +418,9 @@ def picture_errors(gpu, ladder, state, metric):
         if not (true_half[..., :3].any() and true[..., :3].any()):
             raise Senseless("The sphere of the reference is black: no error is relative to it.")
         value = metric.function(whole, true)
+        if noisy and name != reference.name:
+            noise = max(metric.function(half, true_half) ** 2 - value**2, 0.0)
+            return root_of(max(value**2 - noise, 0.0), noise * np.sqrt(72 / np.count_nonzero(true[..., 3])))
         own = metric.function(true_half, true) if differ else abs(value - metric.function(half, true_half))
         return Measured(value, own + ROUNDING)
 

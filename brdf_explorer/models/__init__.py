@@ -3,6 +3,7 @@
 from .dielectric import Dielectric
 from .diffuse import Diffuse
 from .microfacet import Microfacet
+from .multiscatter import Multiscatter
 from .nonspecular import Nonspecular
 
-MODELS = {model.name(): model for model in (Microfacet, Dielectric, Diffuse, Nonspecular)}
+MODELS = {model.name(): model for model in (Microfacet, Multiscatter, Nonspecular, Dielectric, Diffuse)}

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .. import microsurface
 from ..lib import slot
 from ..lib.common import HORIZON, above_horizon, quotient, split
 from ..lib.facet_lobe import blurred
-from ..lib.facets import facets as integral
+from ..lib.facets import facets
 from ..lib.microfacet import cos_facet
 from ..model import Model, choice, param
-from . import facets
 
 
 @dataclass(frozen=True)
@@ -24,21 +24,21 @@ class Nonspecular(Model):
     eta, k, kappa and fresnel are of lobe.
     """
 
-    alpha: tuple = facets.alpha(0.3, low=0.01)
+    alpha: tuple = microsurface.alpha(0.3, low=0.01)
     albedo: tuple = param((0.8, 0.8, 0.8), 0.0, 1.0, "share of the light that a facet reflects, linear RGB", color=True)
     kappa: float = param(100.0, 1.0, 1e6, "sharpness of a facet's lobe: about 1 / its variance in angle", scale="log")
-    eta: tuple = facets.eta()
-    k: tuple = facets.k()
+    eta: tuple = microsurface.eta()
+    k: tuple = microsurface.k()
     facet: str = choice("lambert", ("lambert", "lobe"), "f_mf: Lambert's law, or a lobe about the mirror direction")
-    ndf: str = facets.ndf()
-    shadowing: str = facets.shadowing()
-    fresnel: str = facets.fresnel()
-    spectrum: str = facets.spectrum()
-    smith: str = facets.smith()
+    ndf: str = microsurface.ndf()
+    shadowing: str = microsurface.shadowing()
+    fresnel: str = microsurface.fresnel()
+    spectrum: str = microsurface.spectrum()
+    smith: str = microsurface.smith()
     nodes: str = choice("12", ("8", "12", "16"), "points of the quadrature along each of two angles")
 
     def slots(self):
-        return facets.filled(self.choices())
+        return microsurface.filled(self.choices())
 
     def slopes(self):
         if self.facet == "lambert":
@@ -84,7 +84,7 @@ class Nonspecular(Model):
         Lambda = slot("smith", self.ndf, self.smith).Lambda
         G = slot("shadowing", self.shadowing).G2(wo, wi, Lambda(wo, alpha), Lambda(wi, alpha))
         gauss = slot("gauss", self.nodes)
-        seen = integral(
+        seen = facets(
             wo,
             wi,
             alpha,

@@ -8,6 +8,7 @@ import numpy as np
 from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
+from ..lib.random import seeded
 from ..model import Choice, Param, declared
 from ..models import MODELS
 from ..state import Material, presets
@@ -55,7 +56,8 @@ def matters(cls, choices):
     """Names of the parameters that change f or pdf when these choices are made; with F = 1, say, eta and k do not."""
 
     def values(model):
-        return np.column_stack([model.f(WO, WI), model.pdf(WO, WI)])
+        with seeded(1):  # a stochastic f by the same random numbers
+            return np.column_stack([model.f(WO, WI), model.pdf(WO, WI)])
 
     middle = {}
     for name, p in declared(cls, Param).items():

@@ -1,6 +1,6 @@
 """The factors of a microfacet model along the plane of incidence: D, G, F, the Jacobian, and their product, which is f."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,7 +28,10 @@ WIDE, NARROW = 158, 74  # points of a column of the legend
 
 @dataclass(frozen=True)
 class Factors(Drawn):
-    """The factors of a microfacet model, curve by curve, over the direction to the light in the plane of incidence."""
+    """The factors of a microfacet model, curve by curve, over the direction to the light in the plane of incidence.
+
+    Of one reflection, whatever the material puts back of more.
+    """
 
     title = "Factors"
 
@@ -51,7 +54,7 @@ class Factors(Drawn):
 
         Of a material that transmits theta goes on below the surface, beyond -90 degrees.
         """
-        found = tables(gpu, state.model, state.directions, rays=2, nodes=NODES)[::-1]
+        found = tables(gpu, alone(state.model), state.directions, rays=2, nodes=NODES)[::-1]
         theta, wi, f = (np.concatenate(parts) for parts in zip(*(t.plane() for t in found), strict=True))
         values = {name: np.asarray(v) for name, v in state.model.factors(found[0].wo, wi).items()}
         return theta, values | {"F": luminance(values["F"]), "product": luminance(f)}
@@ -66,9 +69,7 @@ class Factors(Drawn):
         width, height = size
         if not hasattr(state.model, "factors"):
             draw.text("No factors to show:", (width / 2, height / 2 + 9 * scale), "muted")
-            draw.text(
-                f"{state.model.name()} has no facets that are mirrors", (width / 2, height / 2 - 9 * scale), "muted"
-            )
+            draw.text(f"{state.model.name()} is no product of D, G and F", (width / 2, height / 2 - 9 * scale), "muted")
             yield draw, "", True
             return
         theta, values = self.curves(gpu, state)
@@ -112,4 +113,9 @@ class Factors(Drawn):
     def mirror(self, state):
         """Luminance of f in the mirror direction."""
         wo = direction(np.radians(state.directions.theta_o), np.radians(state.directions.phi_o))
-        return float(luminance(state.model.f(wo, wo * [-1, -1, 1])))
+        return float(luminance(alone(state.model).f(wo, wo * [-1, -1, 1])))
+
+
+def alone(model):
+    """The material without what its choice `energy` puts back: of that f is no product."""
+    return replace(model, energy="none") if "energy" in model.choices() else model

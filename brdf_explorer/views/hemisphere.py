@@ -12,10 +12,12 @@ import numpy as np
 from ..glsl import assemble, of_model
 from ..lib import slot
 from ..lib.common import normalize, vec
+from ..lib.random import seeded
 from ..lib.srgb import luminance
-from ..measure.albedo import integral, quadrature
+from ..measure.albedo import albedo_with_error, integral, quadrature
 from ..measure.grid import angles, direction, flat_refraction, sides
 from ..measure.microsurface import D_visible, facets, projected_area
+from ..measure.noise import mean_f
 from ..model import choice, param
 from .axes import Axis, colorbar
 from .diagram import number
@@ -34,6 +36,7 @@ RAYS = 96  # about the mirror direction, and directions a ray, among which the p
 FAINT = 0.01  # share of the peak down to which the inset shows the lobe
 NARROW = 0.12  # half width of that, in radii of the disc, from which on the disc itself shows it
 HEAD, FOOT, RIM = 46, 26, 24  # points above the disc and below it for words, and around it
+WALKS = 16  # estimates of a stochastic f for a pixel
 EDGE = 1 - 1e-6  # radius of the directions that count as the horizon's: on it f is 0
 BAR, INSET, STRIP = 84, 138, 150  # points for the colour bar, for the inset, and of both below the disc
 
@@ -74,7 +77,12 @@ class Hemisphere(Drawn):
             return D_visible(model, wo, w)
         if self.quantity == "pdf":
             return model.pdf(wo, w)
-        return luminance(model.f(wo, w)) * (np.abs(w[..., 2]) if self.quantity == "f_cos" else 1.0)
+        if model.stochastic:
+            with seeded(0):  # the same numbers for all
+                f = mean_f(model, wo, w, WALKS).value
+        else:
+            f = model.f(wo, w)
+        return luminance(f) * (np.abs(w[..., 2]) if self.quantity == "f_cos" else 1.0)
 
     def hemispheres(self, model):
         """`up` of the hemispheres that are shown."""
@@ -92,6 +100,8 @@ class Hemisphere(Drawn):
         seen = values >= FAINT * values.max()
         best = disc(w[np.unravel_index(values.argmax(), values.shape)])
         reach = float(np.linalg.norm(disc(w[seen]) - best, axis=-1).max())
+        if model.stochastic:  # further steps would climb its noise
+            return Peak(float(values.max()), of_disc(best), reach)
         steps = np.stack(np.meshgrid(*[np.linspace(-1, 1, 5)] * 2), axis=-1).reshape(-1, 2)
         for step in 0.1 * max(reach, 1e-6) * 0.6 ** np.arange(30):
             tries = best + step * steps
@@ -105,6 +115,9 @@ class Hemisphere(Drawn):
             return projected_area(model, (0.0, 0.0, 1.0))
         if self.quantity == "D_visible":
             return projected_area(model, wo) / float(slot("ndf", model.ndf).visible_area(wo, np.array(model.alpha)))
+
+        if model.stochastic and self.quantity != "pdf":
+            return float(luminance(albedo_with_error(model, wo).value))
 
         def function(wo, wi):
             return (model.pdf(wo, wi) if self.quantity == "pdf" else luminance(model.f(wo, wi)) * np.abs(wi[..., 2]))[
@@ -133,6 +146,8 @@ class Hemisphere(Drawn):
         up, peak = max(peaks.items(), key=lambda item: item[1].value)
         theta, phi = np.degrees(angles(peak.w * [1.0, 1.0, up])).round(2) + 0.0  # which makes -0 a 0
         note = f"peak {number(peak.value, 4)} / sr at θ {theta:g}°" + f", φ {phi % 360:g}°" * bool(theta)
+        if model.stochastic and self.quantity in ("f", "f_cos"):
+            note += f", by {WALKS} walks a pixel"
         yield draw, note, False
         yield draw, f"{note}; {QUANTITIES[self.quantity][1]} = {self.mass(model, wo):.6f}", True
 
@@ -204,6 +219,7 @@ class Hemisphere(Drawn):
         slots = {f"of_{self.over}": self.quantity, "radius": self.scale}
         uniforms = {
             "material": model,
+            "walks": WALKS,
             "wo": tuple(wo),
             "up": up,
             "size": tuple(map(float, size)),

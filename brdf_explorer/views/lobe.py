@@ -1,6 +1,6 @@
 """The lobe of f over directions to the light, in 3D."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ..model import param
 from .diagram import QUANTITIES, Diagram, apart, arrow, nice_step, number, powers_below, radius
 from .lines import Stroke, draw_lines
 from .picture import PALETTES, R2, Label, Picture, rgb
-from .table import NODES, RAYS, tables
+from .table import NODES, RAYS, noise, progressive
 
 PASSES = 8  # jittered drawings whose mean has smooth edges
 BAR = 76  # points at the right for the legend
@@ -32,8 +32,19 @@ class Lobe(Diagram):
         return (self, state.model, state.directions, state.look.theme)
 
     def pictures(self, gpu, state, size, scale=1.0):
+        for values, final in progressive(gpu, state.model, state.directions):
+            note = described(values)
+            if values[0].error is not None:
+                note += f"; {values[0].walks} walks a direction"
+                note += f", noise {number(100 * noise(values), 2)} %" if np.isfinite(values[0].error).all() else ""
+            for picture in self.drawn(gpu, state, values, size, scale):
+                yield replace(picture, note=note, done=picture.done and final)
+                if not final:
+                    break
+
+    def drawn(self, gpu, state, values, size, scale):
+        """Pictures of Tables, from the first to the smooth one."""
         colors = PALETTES[state.look.theme]
-        values = tables(gpu, state.model, state.directions)
         peak = max(map(self.peak, values))
         share = 1 / peak if peak > 0 else 0.0
         target = gpu.target("lobe", size, 4, "f1")
@@ -41,7 +52,6 @@ class Lobe(Diagram):
         below, above, labels = stage(camera, values[0].wo, colors, state.model.index())
         outlines = [self.outline(camera, t, share, colors) for t in values]
         above.append(outlines[0])
-        note = described(values)
         over = gpu.program(assemble("views/over.frag"))
         surfaces = [self.surfaces(gpu.beside(f"lobe {i}"), t, camera, share) for i, t in enumerate(values)]
         for layers in zip(*surfaces, strict=True):
@@ -55,7 +65,7 @@ class Lobe(Diagram):
             gpu.draw(over, target, {"share": 1.0}, {"picture": layer.color_attachments[0]}, blend="premultiplied")
             draw_lines(gpu, target, above)
             legend = self.draw_bar(gpu, target, size, scale, peak, colors)
-            yield Picture(target, labels=labels + legend, note=note, done=done)
+            yield Picture(target, labels=labels + legend, done=done)
 
     def peak(self, values):
         """The largest of what the radius shows of a Table."""

@@ -1,24 +1,42 @@
 """The slice through the plane of incidence as a polar plot: f or f cos over the direction to the light."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ..lib.srgb import luminance
 from ..measure.grid import direction, flat_refraction
+from ..measure.laws import Shader
+from ..measure.noise import mean_f
 from ..model import choice
 from .diagram import QUANTITIES, Diagram, apart, arrow, nice_step, number, powers_below, radius
 from .drawing import Drawing, Drawn
 from .picture import Curves
-from .table import tables
+from .table import LONGEST, PASSES, progressive
 
 MARGIN = 44  # points around the half disc, for the angles
 FOOT = 46  # points below it, for values and a note; half of that below a whole disc
 NODES = 385  # of each half of a slice: many more than the lobe has, so that no tip has corners in a large picture
+FEW = 97  # the same of estimates, which are the better for being few
 LINE = 18  # points from one line of the legend to the next
 LETTER = 5.6  # points that a letter of the legend takes, on average
 CHANNELS = ("red", "green", "blue")
 LETTERS = 10  # that a line of the legend has room for at least
+
+
+PARTS = ("red", "purple", "green")  # colours of the parts of a material
+
+
+class Slice(NamedTuple):
+    """A curve. color: a role, or the number of a material; double and error: None where there is none."""
+
+    name: str
+    color: str | int
+    theta: np.ndarray  # (n,) radians
+    single: np.ndarray  # float32 values (n,)
+    double: np.ndarray | None  # float64 ones
+    error: np.ndarray | None  # standard errors
 
 
 @dataclass(frozen=True)
@@ -54,33 +72,80 @@ class Polar(Drawn, Diagram):
         extent = max(min(size[0] / 2 - MARGIN * scale, size[1] - around), 1.0)
         return np.array([size[0] / 2, FOOT * scale + max(size[1] - extent - around, 0.0) / 2]), extent
 
-    @np.errstate(under="ignore")  # in the tails of a density
     def slices(self, gpu, state):
-        """[(name, colour role or number, theta (n,), float32 values (n,), float64 values (n,))] of each curve, and side."""
-        found = []
-        for index, material in enumerate(self.materials(state)):
-            for t in tables(gpu, material.model, state.directions, rays=2, nodes=NODES):
-                theta, wi, f32 = t.plane()
-                f64 = material.model.f(t.wo, wi)
-                cos = self.factor(wi)
-                if self.curves == "rgb":
-                    for c, channel in enumerate(CHANNELS):
-                        found.append((channel, channel, theta, f32[:, c] * cos, f64[:, c] * cos))
-                else:
-                    found.append((material.name, index, theta, luminance(f32) * cos, luminance(f64) * cos))
+        """The Slices of all curves at their best."""
+        return next(found for found, _, done in self.progress(gpu, state, PASSES) if done)
+
+    def progress(self, gpu, state, passes=LONGEST):
+        """Yield (Slices, walks of each value, done): once, or better and better where a material is stochastic."""
+        runs = [self.of_material(gpu, state, i, passes) for i in range(len(self.materials(state)))]
+        last = [next(run) for run in runs]
+        while True:
+            done = all(final for _, _, final in last)
+            yield [s for found, _, _ in last for s in found], max(walks for _, walks, _ in last), done
+            if done:
+                return
+            last = [next(run, (found, walks, True)) for run, (found, walks, _) in zip(runs, last, strict=True)]
+
+    def of_material(self, gpu, state, index, passes):
+        """Yield (Slices, walks, done) of one material."""
+        material = self.materials(state)[index]
+        model = material.model
+        shown = model.parts() if material is state.material and self.curves == "materials" else {}
+        if len(shown) < 2:
+            shown = {material.name: model}
+        nodes = FEW if model.stochastic else NODES
+        runs = [progressive(gpu, m, state.directions, 2, nodes, passes=passes) for m in shown.values()]
+        last = [next(run) for run in runs]
+        while True:
+            sides = zip(*(tables for tables, _ in last), strict=True)
+            found = [
+                s for tables in sides for s in self.of_tables(material, index, dict(zip(shown, tables, strict=True)))
+            ]
+            done = all(final for _, final in last)
+            yield found, last[0][0][0].walks, done
+            if done:
+                return
+            last = [next(run, (one, True)) for run, (one, _) in zip(runs, last, strict=True)]
+
+    @np.errstate(under="ignore")  # in the tails of a density
+    def of_tables(self, material, index, tables):
+        """The Slices of one side of the surface, by Tables of a material or by name of its parts."""
+        theta, wi, f = zip(*(t.plane() for t in tables.values()), strict=True)
+        theta, wi, wo = theta[0], wi[0], next(iter(tables.values())).wo
+        cos = np.reshape(self.factor(wi), (-1, 1))
+        values = [v * cos for v in f]
+        errors = [None if t.error is None else t.along(t.error) * cos for t in tables.values()]
+        found, name = [], material.name
+        if len(tables) > 1:
+            for role, part, v, e in zip(PARTS, tables, values, errors, strict=False):
+                found.append(Slice(part, role, theta, luminance(v), None, luminance(e)))
+            values, errors = [sum(values)], [np.sqrt(sum(e**2 for e in errors))]
+            name = f"{name}, all"
+        double = None if material.model.stochastic else material.model.f(wo, wi) * cos
+        columns = (values[0], double, errors[0])
+        if self.curves == "rgb":
+            for c, channel in enumerate(CHANNELS):
+                found.append(Slice(channel, channel, theta, *(None if v is None else v[:, c] for v in columns)))
+        else:
+            found.append(Slice(name, index, theta, *(None if v is None else luminance(v) for v in columns)))
         return found
 
     @np.errstate(under="ignore")
     def table_of(self, gpu, state):
         """The slices as Curves over theta in degrees, each evaluated at every angle that the grid of one of them has."""
-        slices = self.slices(gpu, state)
-        x = np.concatenate([s[2] for s in slices])
+        x = np.concatenate([s.theta for s in self.slices(gpu, state)])
         x = np.unique(np.where(x < -np.pi, x + 2 * np.pi, x))
         phi = np.radians(state.directions.phi_o)
         wo, wi = direction(np.radians(state.directions.theta_o), phi), direction(x, phi)
         y = {}
         for material in self.materials(state):
-            for kind, f in (("float32", gpu.f(material.model, wo, wi)), ("float64", material.model.f(wo, wi))):
+            if material.model.stochastic:
+                walks = mean_f(Shader(gpu, material.model), wo, wi)
+                columns = {"mean": walks.value, "standard error": walks.error}
+            else:
+                columns = {"float32": gpu.f(material.model, wo, wi), "float64": material.model.f(wo, wi)}
+            for kind, f in columns.items():
                 f = f * np.reshape(self.factor(wi), (-1, 1))
                 if self.curves == "rgb":
                     y |= {f"{channel} {kind}": f[:, c] for c, channel in enumerate(CHANNELS)}
@@ -89,11 +154,18 @@ class Polar(Drawn, Diagram):
         return Curves("theta_i [deg]", np.degrees(x), y)
 
     def drawings(self, gpu, state, size, scale=1.0):
+        for slices, walks, done in self.progress(gpu, state):
+            draw, note = self.drawing(state, slices, size, scale)
+            if any(s.error is not None for s in slices):
+                note += f"; {walks} walks a direction, bands of one standard error"
+            yield draw, note, done
+
+    def drawing(self, state, slices, size, scale):
+        """The Drawing of Slices, and a note."""
         draw = Drawing(size, scale, state.look.theme)
         colors = draw.colors
         width, height = size
-        slices = self.slices(gpu, state)
-        peak = max(float(np.max(s[3])) for s in slices)
+        peak = max(float(np.max(s.single)) for s in slices)
         top = 1.04 * peak if peak > 0 else 1.0
         whole = self.whole(state)
         center, extent = self.disc(size, scale, whole)
@@ -106,8 +178,8 @@ class Polar(Drawn, Diagram):
         def reach(values):
             return radius(values / top, self.radius, self.decades)
 
-        def stroke(theta, share, color, points):
-            draw.stroke(place(theta, share), color, points)
+        def stroke(theta, share, color, points, opacity=1.0):
+            draw.stroke(place(theta, share), color, points, opacity)
 
         if self.radius == "linear":
             step = nice_step(top / 4)
@@ -143,19 +215,30 @@ class Polar(Drawn, Diagram):
         draw.text("ωo", viewer, "accent", size=13.0)
 
         legend = [(QUANTITIES[self.quantity], "ink")]
-        for name, key, theta, f32, _ in slices:
-            color = key if self.curves == "rgb" else colors["curves"][key % len(colors["curves"])]
-            stroke(theta, reach(f32), color, 4.0)
-            legend += [(name, color)] * ((name, color) not in legend)
+        bands = [s for s in slices if s.error is not None and np.isfinite(s.error).all()]
+        for s in bands:  # from one end of each bar to the next
+            ends = np.stack([s.single - s.error, s.single + s.error], axis=-1)
+            stroke(np.repeat(s.theta, 2), reach(np.maximum(ends, 0.0)).ravel(), self.color(s, colors), 1.5, 0.3)
+        if bands:
+            draw.over()
+        for s in slices:
+            color = self.color(s, colors)
+            stroke(s.theta, reach(s.single), color, 4.0 if s.error is None else 2.0)
+            legend += [(s.name, color)] * ((s.name, color) not in legend)
         draw.over()
-        if self.reference == "on":
-            for _, _, theta, _, f64 in slices:
-                stroke(theta, reach(f64), "reference", 1.0)
+        if self.reference == "on" and any(s.double is not None for s in slices):
+            for s in slices:
+                if s.double is not None:
+                    stroke(s.theta, reach(s.double), "reference", 1.0)
             legend.append(("float64", "reference"))
         for words, color, side, y in self.columns(legend, size, scale, whole):
             x = 12 * scale if side == "left" else width - 12 * scale
             draw.text(words, (x, height - y), color, (0.0 if side == "left" else 1.0, 0.5), 12.5)
-        yield draw, f"peak {number(peak, 4)} / sr at θo = {state.directions.theta_o:g}°", True
+        return draw, f"peak {number(peak, 4)} / sr at θo = {state.directions.theta_o:g}°"
+
+    def color(self, slice, colors):
+        """The colour of a Slice: that of its material, or its role's."""
+        return colors["curves"][slice.color % len(colors["curves"])] if isinstance(slice.color, int) else slice.color
 
     def columns(self, legend, size, scale, whole=False):
         """The legend [(words, colour)] in the upper corners, clear of angles and viewer: [(words, colour, side, y from the top)].

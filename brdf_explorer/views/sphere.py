@@ -63,7 +63,7 @@ class Sphere(View):
         uniforms |= {"size": (width, height), "center": (width / 2, height / 2), "radius": self.radius(size)}
         uniforms |= {"sides": float(SIDES)}
         target = gpu.target("sphere", size)  # new ones are clear, and what lies outside of the disc stays so
-        drawn = bool(textures) or body == "ball"  # by random numbers
+        drawn = bool(textures) or body == "ball" or state.model.stochastic  # by random numbers
         most = self.samples if drawn else SMOOTH
         noise, half = None, None
         for n in range(1, most + 1):

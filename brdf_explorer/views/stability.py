@@ -259,6 +259,7 @@ def shown_at(state, cell):
 
     def within(name, value, declaration):
         values = value if isinstance(value, list) else [value]
+        values = [round(v) for v in values] if isinstance(declaration.default, int) else values
         kept = [min(max(v, declaration.low), declaration.high) for v in values]
         unit = "°" if declaration.unit == "deg" else ""
         for there, here in zip(values, kept, strict=True):

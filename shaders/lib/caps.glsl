@@ -11,10 +11,12 @@ vec3 sum_with_cap(vec3 v, vec2 u, float cut) {
   float cosine = azimuth.x * cos(phi) + azimuth.y * sin(phi);
   float sine = azimuth.x * sin(phi) - azimuth.y * cos(phi);
   float low = cut * v.z;  // the least height of the sum
-  float extent = 1.0 + v.z - low;
+  float wide = 1.0 + abs(v.z);
+  float narrow = sin_o * sin_o / wide;  // 1 - |v.z|
+  float extent = (v.z < 0.0 ? narrow : wide) - low;
   float height = (1.0 - u.y) * extent + low;
   float q = u.y * extent;  // 1 - c.z
-  float t = sin_o * sin_o / (1.0 + v.z);  // 1 - v.z
+  float t = v.z < 0.0 ? wide : narrow;  // 1 - v.z
   float r = sqrt(q * (t + height));  // sqrt((1 - c.z) (1 + c.z))
   float outer = r + sin_o;
   float excess = outer > 0.0 ? height * (q - t) / outer : 0.0;  // r - sin_o

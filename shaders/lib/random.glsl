@@ -28,6 +28,16 @@ uvec3 pcg3d(uvec3 v) {
 
 // The highest 24 bits as a number in [0, 1): float32 holds no more of them, and rounding all 32 could give 1.
 vec2 unit_interval(uvec2 bits) { return vec2(bits >> 8u) * (1.0 / 16777216.0); }
+vec3 unit_interval(uvec3 bits) { return vec3(bits >> 8u) * (1.0 / 16777216.0); }
+
+// State of the generator of formulas that draw numbers of their own. Views seed it by pixel and pass (views/seeding_pixel.glsl).
+uvec3 random_state = uvec3(0u);
+
+// Three numbers in [0, 1), others at each call.
+vec3 drawn() {
+  random_state = pcg3d(random_state);
+  return unit_interval(random_state);
+}
 
 // A third number from a point of the unit square: for a sampler that takes two and has one decision more to make. It is the
 // point's hash, so that it shares no pattern with the two.

@@ -12,11 +12,11 @@ float visible_slope_beckmann(float u, float sin_o, float cos_o) {
   const float HALF_INV_SQRT_PI = 0.282094792;
   float low = -6.0;
   if (u == 0.0) return low;  // the root is at -infinity: 24 steps would end anywhere on the way
-  float high = min(cos_o / max(sin_o, 1e-9), 6.0);  // beyond 6 lies 1e-17 of the area; facets steeper than cot face away
+  float high = clamp(cos_o / max(sin_o, 1e-9), -6.0, 6.0);  // beyond 6 lies 1e-17 of the area; facets steeper than cot face away
   float head = 0.5 * cos_o + HALF_INV_SQRT_PI * sin_o;  // visible area of the slopes below 0
-  float tail = sin_o * exp_precise(-high * high) * h_beckmann(high);  // visible area less cos_o: cos_o Lambda
-  float area = cos_o + tail;
-  bool upper = u * area > head;
+  float tail = sin_o * exp_precise(-high * high) * h_beckmann(abs(high));  // visible area less cos_o, or from below all of it
+  float area = max(cos_o, 0.0) + tail;
+  bool upper = cos_o > 0.0 && u * area > head;
   if (upper) low = 0.0; else high = min(high, 0.0);
   float x = 0.5 * (low + high);
   for (int i = 0; i < 24; ++i) {
@@ -35,6 +35,7 @@ float visible_slope_beckmann(float u, float sin_o, float cos_o) {
   return x;
 }
 
+// A visible normal; wo may lie below the horizon.
 vec3 sample_wm(vec3 wo, vec2 u, vec2 alpha) {
   vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
   float sin_o = length(v.xy);

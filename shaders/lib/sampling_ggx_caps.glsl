@@ -4,6 +4,7 @@
 #include "lib/common.glsl"
 #include "lib/ndf_ggx.glsl"
 
+// A visible normal; wo may lie below the horizon.
 vec3 sample_wm(vec3 wo, vec2 u, vec2 alpha) {
   vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
   vec3 sum = sum_with_cap(v, u, 0.0);

@@ -1,5 +1,6 @@
 // A sphere under an orthographic eye at +z: one ray a pixel and pass, its normal in closed form.
 #include "models/{model}.glsl"
+#include "views/seeding_{seeding}.glsl"
 
 uniform vec2 center;   // pixels
 uniform float radius;  // pixels
@@ -21,6 +22,7 @@ void main() {
   float coverage = clamp(radius + 0.5 - distance(gl_FragCoord.xy, center), 0.0, 1.0);
   color = vec4(0.0);
   if (coverage == 0.0) return;
+  seed_random(pass);
   vec2 p = (gl_FragCoord.xy + jitter - center) / radius;
   float edge = max(1.0 - 0.5 / radius, 0.0);  // a rim's pixel shows the sphere half a pixel inside: its cosine is not 0
   float r = length(p);

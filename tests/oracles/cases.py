@@ -60,14 +60,22 @@ def case_label(value):
     return value.name() if isinstance(value, type) else "-".join(value.values())
 
 
+def typed(p, values):
+    """Numbers as a Param takes them: whole where it is; a tuple, or the first."""
+    values = [round(float(v)) if isinstance(p.default, int) else float(v) for v in np.atleast_1d(values)]
+    return tuple(values) if len(values) > 1 else values[0]
+
+
 def material(cls, choices, rng):
     """The model at random parameters, over decades where the slider is: half of the pairs and triples are of one number."""
     drawn = {}
     for name, p in declared(cls, Param).items():
         u = rng.random(p.size)
         values = p.low * (p.high / p.low) ** u if p.scale == "log" else p.low + (p.high - p.low) * u
-        drawn[name] = np.clip(values if rng.random() < 0.5 else values[:1].repeat(p.size), p.low, p.high)
-        drawn[name] = tuple(drawn[name].tolist()) if p.size > 1 else float(drawn[name][0])
+        values = values if rng.random() < 0.5 else values[:1].repeat(p.size)
+        drawn[name] = typed(p, np.clip(values, p.low, p.high))
+    if cls.stochastic:  # most walks have not one of the later orders
+        drawn["lowest"] = 1
     return cls(**choices, **drawn)
 
 

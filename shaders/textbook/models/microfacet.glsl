@@ -9,21 +9,23 @@
 #include "lib/smith_{ndf}_{smith}.glsl"
 #include "lib/shadowing_{shadowing}.glsl"
 #include "lib/fresnel_{fresnel}.glsl"
+#include "models/microfacet_{energy}.glsl"
 
 vec3 f(vec3 wo, vec3 wi) {
   if (wo.z < 0.0 || wi.z < 0.0) return vec3(0.0);
   vec3 wm = normalize(wo + wi);
   float G = G2(wo, wi, Lambda(wo, material.alpha), Lambda(wi, material.alpha));
-  return D(wm, material.alpha) * G * F(cos_facet(wo, wi), material.eta, material.k) / (4.0 * wi.z * wo.z);
+  vec3 facet = F(cos_facet(wo, wi), material.eta, material.k);
+  return energy_f(D(wm, material.alpha) * G * facet / (4.0 * wi.z * wo.z), wo, wi);
 }
 
 float pdf(vec3 wo, vec3 wi) {
   if (wo.z < 0.0 || wi.z < 0.0) return 0.0;
-  return pdf_wi(wo, wi, D(normalize(wo + wi), material.alpha), material.alpha);
+  return energy_pdf(pdf_wi(wo, wi, D(normalize(wo + wi), material.alpha), material.alpha), wo, wi);
 }
 
 vec3 sample_f(vec3 wo, vec2 u, out vec3 wi) {
-  wi = sample_wi(wo, u, material.alpha);
+  wi = energy_wi(wo, u);
   if (wi.z < 0.0) return vec3(0.0);
   return f(wo, wi) * wi.z / pdf(wo, wi);
 }

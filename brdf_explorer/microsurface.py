@@ -1,6 +1,6 @@
 """Parameters that models of microfacets share, each declared once."""
 
-from ..model import choice, param
+from .model import choice, param
 
 METALS = (
     "gold",

@@ -1,0 +1,228 @@
+"""The walk over the microsurface: energy, known answers by quadrature, and that both twins walk alike."""
+
+import numpy as np
+import pytest
+
+from brdf_explorer.lib import slot
+from brdf_explorer.lib.common import PI, dot, normalize, vec
+from brdf_explorer.lib.random import Draws, pcg3d, random_states, seeded
+from brdf_explorer.lib.walk import depth_below, flight, meets, passage
+from brdf_explorer.measure.grid import direction
+from brdf_explorer.measure.laws import Shader
+from brdf_explorer.measure.noise import Running, mean_f
+from brdf_explorer.models import MODELS
+from brdf_explorer.models.multiscatter import MOST
+
+Multiscatter, Microfacet = MODELS["multiscatter"], MODELS["microfacet"]
+NDFS = ("ggx", "beckmann")
+WHITE = {
+    "conductor": {"fresnel": "one"},
+    "dielectric": {"facets": "dielectric", "eta_below": 1.5},
+    "diffuse": {"facets": "diffuse", "albedo": 1.0},
+}
+
+
+def sees(theta, phi=20.0):
+    return direction(np.radians(theta), np.radians(phi))
+
+
+def pairs(rng, n, least=0.1):
+    """Directions wo and wi (n, 3) with cosines from `least` on."""
+    return [direction(np.arccos(rng.uniform(least, 1, n)), rng.uniform(0, 2 * PI, n)) for _ in range(2)]
+
+
+def dense(model, wo, wi):
+    """n^2 of the side of wi over that of wo, (..., 1): what makes energy of radiance."""
+    n = model.index() or 1.0
+    return n ** ((wo[..., 2:] > 0) * 2.0 - (wi[..., 2:] > 0) * 2.0)
+
+
+def energy(gpu, model, wo, error, seed=1, n=100_000):
+    """The share of the energy along wo that is scattered: a Mean, of as many samples as make its error at most that."""
+    rng, running = np.random.default_rng(seed), Running()
+    while running.count < 2 * n or np.any(running.mean().error > error):
+        wi, weight = gpu.sample_f(model, wo, rng.integers(0, 2**24, (n, 2)) * 2.0**-24)
+        running.add(weight[:, :1] * dense(model, wo, wi))
+    return running.mean()
+
+
+# --- energy ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("ndf", NDFS)
+@pytest.mark.parametrize("facets", WHITE)
+def test_white_furnace(gpu, facets, ndf):
+    """Where facets lose nothing the surface loses nothing: to 3.5 standard errors, as 18 are tested, of at most 1e-3 or 2e-3."""
+    for alpha, theta, error in [(0.1, 0.0, 1e-3), (0.1, 85.0, 1e-3), (1.0, 45.0, 2e-3)]:
+        model = Multiscatter(alpha=alpha, ndf=ndf, **WHITE[facets])
+        found = energy(gpu, model, sees(theta), error)
+        assert np.abs(found.value[0] - 1) < 3.5 * found.error[0], (model, theta, found)
+
+
+@pytest.mark.parametrize("facets", WHITE)
+def test_a_walk_leaves_before_its_last_order(gpu, facets):
+    """The energy of eight orders falls by more than 10 from 17 on, so beyond 64 lies less than 1e-9."""
+    energies = []
+    for first in (17, 25):
+        model = Multiscatter(alpha=1.0, lowest=first, orders=8, **WHITE[facets])
+        energies.append(energy(gpu, model, sees(0.0), np.inf).value[0])
+    assert energies[0] < 1e-3 and energies[1] < 0.15 * energies[0] + 1e-9
+    assert MOST == 64 and 0.15 ** ((MOST - 32) / 8) * energies[1] < 1e-7
+
+
+@pytest.mark.parametrize("facets", WHITE)
+def test_orders_add_up(facets):
+    """By the same random numbers, walks to order 1, of order 2, and from order 3 on are what the whole walk is."""
+    wo, wi = pairs(np.random.default_rng(3), 500)
+    found = []
+    for first, orders in ((1, 1), (2, 1), (3, MOST), (1, MOST)):
+        with seeded(3):
+            found.append(Multiscatter(alpha=0.7, lowest=first, orders=orders, **WHITE[facets]).f(wo, wi))
+    np.testing.assert_allclose(sum(found[:3]), found[3], rtol=1e-12, atol=1e-300)
+    assert np.all(found[0].mean(axis=0) > 0) and np.all(found[2].mean(axis=0) > 0)
+
+
+# --- known answers ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("fresnel", ["conductor", "dielectric", "schlick", "one"])
+@pytest.mark.parametrize("ndf", NDFS)
+@np.errstate(under="ignore")
+def test_order_1_of_mirrors_is_microfacet(gpu, ndf, fresnel):
+    """With correlated masking and shadowing, at any alpha, and without noise."""
+    wo, wi = pairs(np.random.default_rng(4), 1000, 0.01)
+    for alpha in ((0.5, 0.5), (0.2, 0.9), (0.05, 0.05)):
+        walk = Multiscatter(alpha=alpha, ndf=ndf, fresnel=fresnel, orders=1)
+        known = Microfacet(alpha=alpha, ndf=ndf, fresnel=fresnel, shadowing="correlated").f(wo, wi)
+        np.testing.assert_allclose(walk.f(wo, wi), known, rtol=1e-12, atol=1e-300)
+        np.testing.assert_allclose(gpu.f(walk, wo, wi), known, rtol=1e-4, atol=1e-30)
+
+
+@pytest.mark.parametrize("ndf", NDFS)
+def test_order_1_of_dielectric_facets_is_dielectric_with_the_beta_function(ndf):
+    """What is reflected without noise, what is transmitted, either way, within 4.5 standard errors of 24 means."""
+    rng = np.random.default_rng(10)
+    wo, wi = pairs(rng, 12)
+    for alpha, eta in [((0.6, 0.6), 1.5), ((0.3, 0.9), 0.7)]:
+        walk = Multiscatter(alpha=alpha, ndf=ndf, facets="dielectric", eta_below=eta, orders=1)
+        known = MODELS["dielectric"](alpha=alpha, ndf=ndf, eta=eta, masking="beta")
+        np.testing.assert_allclose(walk.f(wo, wi), known.f(wo, wi), rtol=1e-11)
+        for side in (1, -1):
+            # nearly through the flat surface, where facets do refract
+            below = normalize(-wo * [1 / eta, 1 / eta, 1] + rng.normal(0, 0.2, wo.shape)) * side
+            above = wo * side
+            below[:, 2] = -side * np.abs(below[:, 2])
+            found, exact = mean_f(walk, above, below, 4096), known.f(above, below)
+            assert np.all(np.abs(found.value - exact) <= 4.5 * found.error + 1e-9 * exact), (found, exact)
+            assert np.mean(exact > 0) > 0.5
+
+
+@pytest.mark.parametrize("up", [False, True])
+def test_passage_is_the_mean_over_flights(up):
+    """By the midpoint rule over the flight's random number."""
+    rng, n = np.random.default_rng(5), 20_000
+    u = np.stack([(np.arange(n) + 0.5) / n] * 2, axis=-1)
+    for depth in (0.05, 0.7, 3.0) if up else (0.0, 0.3, 3.0):
+        w, wi = normalize([0.3, 0.2, 0.8 if up else -0.8]), sees(60.0)
+        area, hidden = rng.uniform(0.2, 1.0, 2)
+        ends = flight(depth, w, area, u)
+        met = ends >= 0
+        known = np.mean(np.exp(-np.where(met, ends, 0.0) * hidden / wi[2]) * met) / wi[2]
+        assert passage(depth, w, area, wi, hidden) == pytest.approx(known, rel=1e-3)
+        assert meets(depth, w, area) == pytest.approx(np.mean(met), abs=1 / n)
+        np.testing.assert_allclose(np.exp(-depth_below(0.1 + depth)), -np.expm1(-0.1 - depth), rtol=1e-12)
+
+
+def facet_integral(model, wo, wi, n=200):
+    """Single scattering of white diffuse facets: the integral of D G2 (wi . wm)+ (wo . wm)+ over the normals, over pi cos cos.
+
+    Over slopes alpha tan(b), which makes GGX's density smooth up to the ends; b by the midpoint rule.
+    """
+    b = ((np.arange(n) + 0.5) / n - 0.5) * PI
+    x, y = np.meshgrid(np.tan(b), np.tan(b), indexing="ij")
+    alpha = np.array(model.alpha)
+    wm = vec(-alpha[0] * x, -alpha[1] * y, np.ones_like(x))
+    jacobian = alpha[0] * alpha[1] * (1 + x * x) * (1 + y * y) * (PI / n) ** 2
+    density = (
+        model.D(wm) * jacobian / dot(wm, wm) ** 2
+    )  # d omega = cos^3 d slope, and each cosine of wm has its length left over
+    Lambda = slot("smith", model.ndf, "exact").Lambda
+    G2 = 1 / (1 + Lambda(wo, alpha) + Lambda(wi, alpha))
+    facing = np.maximum(dot(wm, wi), 0.0) * np.maximum(dot(wm, wo), 0.0) / np.sqrt(dot(wm, wm))
+    return G2 * np.sum(density * facing) / (PI * wo[2] * wi[2])
+
+
+@pytest.mark.parametrize("ndf", NDFS)
+@np.errstate(under="ignore")
+def test_order_1_of_diffuse_facets_is_the_integral_over_facets(ndf):
+    for alpha, wo, wi in [
+        ((0.5, 0.5), sees(40.0), sees(60.0, 200.0)),
+        ((1.0, 1.0), sees(75.0), sees(70.0, 190.0)),
+        ((0.2, 0.8), sees(60.0, 80.0), sees(80.0, 110.0)),
+    ]:
+        model = Multiscatter(alpha=alpha, ndf=ndf, orders=1, **WHITE["diffuse"])
+        found = mean_f(model, wo, wi, 20_000)
+        assert found.error[0] < 0.03 * found.value[0]
+        assert np.abs(found.value[0] - facet_integral(model, wo, wi)) < 4.5 * found.error[0], (model, found)
+
+
+@pytest.mark.parametrize("ndf", NDFS)
+@pytest.mark.parametrize("facets", WHITE)
+def test_f_is_reciprocal(gpu, facets, ndf):
+    """By the shader's walks, 24 pairs of means: 5 standard errors are a chance of 1e-5."""
+    wo, wi = pairs(np.random.default_rng(6), 12)
+    for alpha in ((0.8, 0.8), (0.2, 0.6)):
+        model = Multiscatter(alpha=alpha, ndf=ndf, **WHITE[facets])
+        if model.transmits:  # some from below, some through
+            wo, wi = wo * np.where(np.arange(12) % 3 == 0, [[1], [1], [-1]], 1).T, wi * [1, 1, -1]
+        shader, n2 = Shader(gpu, model), dense(model, wo, wi)
+        there, back = mean_f(shader, wo, wi, 8192), mean_f(shader, wi, wo, 8192)
+        off, spread = np.abs(n2 * there.value - back.value), np.hypot(n2 * there.error, back.error)
+        assert np.all(off <= 5 * spread + 1e-5 * there.value), (
+            off,
+            spread,
+            there.value,
+        )  # float32 rounds tails to 1e-5
+
+
+# --- the twins' random numbers ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("ndf", NDFS)
+@pytest.mark.parametrize("facets", WHITE)
+def test_walks_of_float32_and_float64_agree(gpu, facets, ndf):
+    """Independent ones in their means, and those by the same numbers in the mean of their difference: by z-tests."""
+    wo, wi = pairs(np.random.default_rng(7), 12)
+    model = Multiscatter(alpha=(0.4, 0.9), ndf=ndf, **WHITE[facets])
+    one, other = mean_f(Shader(gpu, model), wo, wi, 4096), mean_f(model, wo, wi, 1024)
+    assert np.all(np.abs(one.value - other.value) < 5 * np.hypot(one.error, other.error) + 1e-5 * one.value)
+    pair = []
+    for evaluator in (Shader(gpu, model), model):
+        with seeded(9):
+            pair.append(evaluator.f(np.broadcast_to(wo, (256, *wo.shape)), wi))
+    off = Running()
+    off.add(pair[0] - pair[1])
+    assert np.all(np.abs(off.mean().value) < 5 * off.mean().error + 1e-5 * pair[1].mean(axis=0))
+    assert np.mean(off.mean().error) < 1e-2 * np.mean(other.error)  # nearly all walks are the same
+
+
+def test_each_call_draws_other_numbers(gpu):
+    model, wo, wi = Multiscatter(alpha=0.8), sees(30.0), sees(50.0, 170.0)
+    for evaluator in (model, Shader(gpu, model)):
+        assert not np.array_equal(evaluator.f(wo, wi), evaluator.f(wo, wi))
+        with seeded(4):
+            first = evaluator.f(wo, wi)
+        with seeded(4):
+            again, other = evaluator.f(wo, wi), evaluator.f(wo, wi)
+        np.testing.assert_array_equal(first, again)
+        assert not np.array_equal(again, other)
+
+
+def test_draws_are_hashes_of_place_and_pass():
+    states = random_states(2000, 5)
+    np.testing.assert_array_equal(states[1030], [6, 1, 2**32 - 6])
+    draws = Draws(states)
+    u = draws.drawn()
+    np.testing.assert_array_equal(u[1030], (pcg3d([6, 1, 2**32 - 6]) >> 8) * 2.0**-24)
+    draws.keep(np.arange(2000) == 7)
+    assert draws.drawn().shape == (1, 3) and 0 <= u.min() and u.max() < 1 and abs(u.mean() - 0.5) < 0.02
