@@ -105,7 +105,8 @@ def absorbs(state):
 
 def mirrors(model):
     """Whether a facet's reflectance is Fresnel's at complex indices."""
-    return getattr(model, "facets", "conductor") == "conductor" and getattr(model, "facet", "lobe") == "lobe"
+    chosen = model.choices()
+    return chosen.get("facets", "conductor") == "conductor" and chosen.get("facet", "lobe") == "lobe"
 
 
 def of_no_metal(state):

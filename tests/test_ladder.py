@@ -53,3 +53,8 @@ def test_a_method_that_changes_the_model_keeps_what_both_have():
         assert getattr(walked, name) == getattr(given, name)
     back = ladder.at(State((Material("", walked),)), ladder.methods[0]).model
     assert back == MODELS["microfacet"](alpha=(0.3, 0.7), eta=1.3, k=2.0, ndf="beckmann", fresnel="schlick")
+
+
+def test_fresnel_is_a_question_about_facets_that_are_mirrors_of_metal():
+    asked = {name: LADDERS["fresnel"].applies(State().with_model(model())) for name, model in MODELS.items()}
+    assert asked["microfacet"] and not asked["diffuse"] and not asked["dielectric"]
