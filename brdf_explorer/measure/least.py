@@ -143,10 +143,16 @@ class Sufficient:
 
 
 def questions(state, metric="picture", ladders=LADDERS):
-    """The Questions of a state, those that change the model first, and (name, why) of the ladders that are not tried."""
+    """The Questions of a state, those that change the model first, and (name, why) of the ladders that are not tried.
+
+    Against an estimate little can be told in a short time, so a ladder up to one is tried only if the state does not hold its
+    cheapest method.
+    """
+    untried = [(k.name, f"{k.methods[0].name} is in use") for k in ladders.values() if against_estimate(k, state)]
+    ladders = {name: k for name, k in ladders.items() if name not in dict(untried)}
     lit, states = surrounded(state.light), models_within_reach(state, ladders)
     arising = {k.name: next((s for s in states if k.applies(s)), None) for k in ladders.values()}
-    found, untried = [], []
+    found = []
     for ladder in ladders.values():
         noise = ladder.measures == "samples" or any("samples" in (m.changes or {}) for m in ladder.methods)
         if noise and not lit:
@@ -172,6 +178,11 @@ def questions(state, metric="picture", ladders=LADDERS):
             remodels = len({type(ladder.at(where, m).model) for m in methods}) > 1
             found.append(Question(ladder, methods, tuple(p for p in left_out if p[1]), noise, remodels))
     return tuple(sorted(found, key=lambda q: not q.remodels)), tuple(untried)
+
+
+def against_estimate(ladder, state):
+    """Whether a state holds the cheapest method of a ladder whose reference's f is an estimate."""
+    return ladder.applies(state) and ladder.current(state) is ladder.methods[0] and ladder.stochastic(state)
 
 
 def models_within_reach(state, ladders):

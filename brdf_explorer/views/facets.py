@@ -117,7 +117,8 @@ class Facets(Drawn):
 
     def legend(self, found, draw):
         """[(words, colour role or number)] of the curves."""
-        colors = dict(zip(STEPS, draw.colors["curves"], strict=False))
+        first, _, *others = draw.colors["curves"]  # the second is near the accent
+        colors = dict(zip(STEPS, (first, *others), strict=False))
         lobes = [(f"κ = {number(k)}", "accent" if k == self.sharpness else colors[k]) for k in found if k != np.inf]
         return [("mirrors: Torrance-Sparrow", "reference"), *lobes]
 
