@@ -64,9 +64,9 @@ def test_known_exceptions_are_shown_and_not_hidden():
     assert 1e-3 < law.measured < law.limit == 3.2e-3
 
 
-def test_exceptions_name_laws():
+def test_exceptions_name_laws(gpu):
     """A misspelt name would leave the law as it is."""
-    names = {law.name for law in laws(Microfacet())}
+    names = {law.name for law in laws(Microfacet(), gpu)}
     assert all(set(cls(**choices).exceptions()) <= names for cls, choices in CASES)
 
 

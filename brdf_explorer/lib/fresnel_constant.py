@@ -9,4 +9,5 @@ from .fresnel import F0
 
 
 def F(c, eta, k):
-    return np.broadcast_to(F0(eta, k), (*np.shape(c), 3))
+    along = F0(eta, k)
+    return np.broadcast_to(along, np.broadcast_shapes((*np.shape(c), 3), along.shape))

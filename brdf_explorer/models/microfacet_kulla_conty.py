@@ -6,6 +6,9 @@ from ..lib import slot
 from ..lib.common import mix, split, vec
 from ..lib.energy_kulla_conty import COSINES, F_mean, F_multiple, pdf_wide, sample_wide, share_wide, wide
 
+LARGEST = 1 - 2.0**-24
+"""The random number next to 1, to which rounding may take a stretched one."""
+
 
 def wide_f(material, wo, wi):
     alpha, lost = np.array(material.alpha), slot("lost", material.ndf, material.shadowing)
@@ -33,7 +36,9 @@ def energy_wi(material, wo, u):
     wi = np.empty(wo.shape)
     wi[own] = sample_wide(vec(x[own] / s[own], y[own]), np.array(material.alpha))
     other = ~own
-    wi[other] = material.single_wi(wo[other], vec((x[other] - s[other]) / (1 - s[other]), y[other]))
+    wi[other] = material.single_wi(
+        wo[other], vec(np.minimum((x[other] - s[other]) / (1 - s[other]), LARGEST), y[other])
+    )
     return wi
 
 

@@ -54,7 +54,7 @@ class Nonspecular(Model):
         if self.shadowing == "none":
             found["energy"] = np.inf
         found["reciprocity"] = (
-            1e-8  # exchanged, the nodes may lie about another corner; and the exponent multiplies rounding
+            1e-6  # exchanged, the nodes may lie about another corner; and the exponent multiplies rounding
         )
         if self.facet == "lobe":
             found["float32 is float64"] = 2e-3  # in a tail rounding moves the nodes; 1e-4 of the largest value and more

@@ -17,11 +17,13 @@ float energy_pdf(float single, vec3 wo, vec3 wi) {
   return mix(single, pdf_wide(wi, material.alpha), wide_share(wo));
 }
 
+const float LARGEST = 1.0 - 0.5 / 8388608.0;  // the random number next to 1, to which rounding may take a stretched one
+
 // u.x chooses the lobe, and what is left of it is as even as before.
 vec3 energy_wi(vec3 wo, vec2 u) {
   float s = wide_share(wo);
   if (u.x < s) return sample_wide(vec2(u.x / s, u.y), material.alpha);
-  return sample_wi(wo, vec2((u.x - s) / (1.0 - s), u.y), material.alpha);
+  return sample_wi(wo, vec2(min((u.x - s) / (1.0 - s), LARGEST), u.y), material.alpha);
 }
 
 vec3 energy_weight(vec3 single, vec3 wo, vec3 wi) {
