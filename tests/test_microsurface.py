@@ -310,7 +310,7 @@ def test_pictures_get_better_and_then_stop(gpu):
 
 def test_a_drag_turns_the_viewer():
     state, size = at(), (320, 240)
-    (x, y), _ = state.views[VIEW].disc(size)
+    x, y = state.views[VIEW].pivot(state, size)
     turned = gestures.viewer(state, state.views[VIEW], (x + 50, size[1] - y - 50), size, 1.0)
     assert turned.directions.theta_o == 45.0
     assert state.views[VIEW].shows(turned) != state.views[VIEW].shows(state)

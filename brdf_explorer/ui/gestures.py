@@ -53,7 +53,7 @@ def zoom(state, view, wheel):
 
 def viewer(state, view, at, size, scale):
     """The viewer's polar angle under the mouse."""
-    (left, foot), _ = view.disc(size, scale, view.whole(state))
+    left, foot = view.pivot(state, size, scale)
     x, y = at[0] - left, size[1] - foot - at[1]
     theta = math.degrees(math.atan2(x, max(y, 0.0)))
     limits = declared(state.directions)["theta_o"]

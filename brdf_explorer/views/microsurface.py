@@ -104,10 +104,10 @@ class Microsurface(Drawn):
             return {"surface": (0, level, width, top), "profile": (0, foot, width, level)}
         return {"profile": (0, foot, width, top)}
 
-    def disc(self, size, scale=1.0):
-        """The place (2,) about which a drag turns the viewer, in pixels from the bottom left, and 1."""
+    def pivot(self, state, size, scale=1.0):
+        """The place (2,) about which a drag turns the viewer, in pixels from the bottom left."""
         left, bottom, right, _ = self.layout(size, scale).get("profile", (0, 0, size[0], size[1]))
-        return np.array([(left + right) / 2, bottom + 40 * scale]), 1.0
+        return np.array([(left + right) / 2, bottom + 40 * scale])
 
     def drawings(self, gpu, state, size, scale=1.0):
         try:

@@ -72,6 +72,10 @@ class Polar(Drawn, Diagram):
         extent = max(min(size[0] / 2 - MARGIN * scale, size[1] - around), 1.0)
         return np.array([size[0] / 2, FOOT * scale + max(size[1] - extent - around, 0.0) / 2]), extent
 
+    def pivot(self, state, size, scale=1.0):
+        """The place (2,) about which a drag turns the viewer, in pixels from the bottom left."""
+        return self.disc(size, scale, self.whole(state))[0]
+
     def slices(self, gpu, state):
         """The Slices of all curves at their best."""
         return next(found for found, _, done in self.progress(gpu, state, PASSES) if done)
