@@ -315,7 +315,7 @@ def test_each_flag_sets_its_parameter(fine, name, view):
         elif isinstance(flag.declaration, Choice) and flag.name != "environment":
             wanted[key] = flag.declaration.options[-1]
             args += [key, wanted[key]]
-    fine("render", name, *args, "--view", view, "--size", "9x9", "-o", "x.png")
+    fine("render", name, *args, "--view", view, "--size", "9x9", "--time", "0", "-o", "x.png")
     for key, flag in flags_of(load("x.png"), [*SECTIONS, view]).items():
         if key in wanted:
             assert flag.value == wanted[key]

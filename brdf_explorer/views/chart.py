@@ -14,6 +14,7 @@ from .axes import Axes, Axis
 from .diagram import number
 from .drawing import Drawing, Drawn
 
+NOTHING = "No question with several methods arises for this material in this light."
 LETTER = 0.56  # width of a letter over the height of its line, more than the average
 UNITS = {"evaluation": ("cost of an evaluation", "ns", 1e9), "sample": ("cost of a sample", "ns", 1e9)}
 UNITS |= {"frame": ("cost of a frame", "ms", 1e3)}
@@ -92,6 +93,10 @@ class Chart(Drawn):
         for i, words in enumerate(lines):
             draw.text(words, (12 * scale, foot - (6 + 14 * i) * scale), "muted", (0.0, 0.5), SMALL)
         total = len(self.ladders(state))
+        if total == 0:
+            for i, words in enumerate(wrapped([NOTHING], width / scale - 24, 12.5)):
+                draw.text(words, (12 * scale, height - (20 + 18 * i) * scale), "muted", (0.0, 0.5), 12.5)
+            return draw
         columns, rows = layout(total, width, height - foot, NARROW * scale)
         for i, tradeoff in enumerate(found):
             row, column = divmod(i, columns)
