@@ -344,7 +344,7 @@ def test_every_mark_is_a_link_to_its_method(gpu):
         assert mine and all(k.state(later) == LADDERS["fresnel"].at(later, method) for k in mine)
         assert all(k.state(elsewhere) == elsewhere for k in mine)
         assert all(("outside its domain: k is not 0" in k.tip) == (method.name == "dielectric") for k in mine)
-        assert all("ns an evaluation, quartiles" in k.tip and "±" in k.tip for k in mine)
+        assert all("ns an evaluation, " in k.tip and "quartiles" in k.tip and "±" in k.tip for k in mine)
 
 
 def test_marks_that_no_state_holds_say_so(gpu):

@@ -24,6 +24,7 @@ ANGLES = 121
 LIMIT = 1e6
 """The sharpness that stands for the limit in the words."""
 LEFT = 54  # points left of the curves, for ticks
+AXIS = 50  # points from there that the name of the upward axis takes
 
 
 @lru_cache(64)
@@ -130,8 +131,10 @@ class Facets(Drawn):
         angles = np.arange(-90, 91, 30)
         axes.frame(angles, [f"{abs(a)}°" for a in angles])
         axes.line([theta_o, theta_o], [y.low, y.high], "accent", 1.2)
-        for words, at in (("ωo", theta_o), ("ωr", -theta_o))[: 2 if theta_o > 8 else 1]:
-            draw.text(words, axes.place(at, y.high) + [0, 9 * s], "accent", size=11.5)
+        for words, theta_i in (("ωo", theta_o), ("ωr", -theta_o))[: 2 if theta_o > 8 else 1]:
+            at = axes.place(theta_i, y.high) + [0, 9 * s]
+            if at[0] - box[0] > AXIS * s:
+                draw.text(words, at, "accent", size=11.5)
         draw.over()
         degrees = np.degrees(theta)
         axes.line(degrees, found[np.inf], "reference", 5.0, 0.35)
