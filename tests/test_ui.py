@@ -98,7 +98,8 @@ def reads(model):
 @act
 def another_model_keeps_the_name_given_to_the_material(user):
     user.window.state = replace(user.state, materials=(replace(user.state.material, name="mine"),))
-    user.item("//Material/diffuse")
+    user.item("//Material/##choice")
+    user.item("//$FOCUSED/diffuse")
     assert user.state.model.name() == "diffuse" and user.state.material.name == "mine"
     user.ctx.item_click("//Material/albedo/##swatch")
     user.yield_()
