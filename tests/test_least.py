@@ -21,9 +21,12 @@ from brdf_explorer.lib.environment import environment_lookup, sample_environment
 from brdf_explorer.lib.random import STREAM_BSDF, STREAM_LIGHT, random2
 from brdf_explorer.measure import advice
 from brdf_explorer.measure import bias as bias_of
+from brdf_explorer.measure import judge as judging
 from brdf_explorer.measure import least as module
 from brdf_explorer.measure.bias import Estimate
-from brdf_explorer.measure.least import Prices, at, in_order, least, passes, questions, result, search
+from brdf_explorer.measure.judge import FINE, SIDE, Judge
+from brdf_explorer.measure.least import Prices, in_order, least, passes, result, search
+from brdf_explorer.measure.questions import at, questions
 from brdf_explorer.model import Invalid
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Light, Material, State, load, loads, save
@@ -97,7 +100,7 @@ def test_answer_is_that_of_an_exhaustive_search(gpu, material, scene, tolerance)
     asked, _ = questions(state, ladders=ladders)
     prices = generous(asked)
     answer = result(least(gpu, state, tolerance, ladders=ladders, prices=prices))
-    judge = module.Judge(gpu, state, asked, "picture", tolerance)
+    judge = Judge(gpu, state, asked, "picture", tolerance)
     ordered = result(in_order(asked, prices, state))
     enough = [c for c in ordered if result(judge.fine(c)).high <= tolerance]
     cheapest = min(enough, key=lambda c: prices.frame(asked, c, at(state, asked, c)))
@@ -240,7 +243,7 @@ def test_bounds_of_the_bias_hold_and_are_close(seed):
     )
     truth = error_under_one_light(SimpleNamespace(reference=reference, reduced=none), 768, 256) ** 2
     for places in range(10):
-        found, _ = result(bias_of.Bias(reference, module.FINE, places).of(none.model))
+        found, _ = result(bias_of.Bias(reference, FINE, places).of(none.model))
         assert found.low <= truth <= found.high
         assert np.sqrt(found.high) < 1.6 * np.sqrt(truth)
 
@@ -298,7 +301,7 @@ def test_scene_matters(gpu, material, ladder, tolerance, cheapest, error):
         asked, _ = questions(state, ladders=ladders)
         answer = result(least(gpu, state, tolerance, ladders=ladders, prices=generous(asked)))
         answers[scene] = answer.steps[0].chosen.name
-        bias, _ = result(bias_of.Bias(answer.reference, module.FINE, 2).of(at(state, asked, (0,)).model))
+        bias, _ = result(bias_of.Bias(answer.reference, FINE, 2).of(at(state, asked, (0,)).model))
         assert scene == "one_light" or bias.low < error**2 < bias.high
     assert answers["one_light"] == cheapest != answers["white_furnace"]
 
@@ -338,7 +341,7 @@ def test_methods_that_change_the_model(gpu, start, tolerance):
     prices, ordered = generous(asked), result(in_order(asked, generous(asked), state))
     reached = [at(state, asked, c).model for c in ordered]
     assert len(set(reached)) == len(reached) == 4 + 4  # the laws of diffuse, and of Fresnel's within its domain
-    judge = module.Judge(gpu, state, asked, "picture", tolerance)
+    judge = Judge(gpu, state, asked, "picture", tolerance)
     answer = result(least(gpu, state, tolerance, ladders=ladders, prices=prices))
     enough = next(c for c in ordered if result(judge.fine(c)).high <= tolerance)
     assert answer.reduced.model == at(state, asked, enough).model
@@ -363,7 +366,7 @@ def test_noise_of_the_reference_is_no_error_of_others(gpu, monkeypatch, loss, to
     """Against a reference of 60 % noise a pass, what is right is found right, and what lost a tenth of it to have done so."""
     monkeypatch.setitem(MODELS, "walk", Walk)
     rng = np.random.default_rng(1)
-    even = np.ones((module.SIDE, module.SIDE, 4))
+    even = np.ones((SIDE, SIDE, 4))
 
     class Pictures:
         """Even ones, of states that are no estimates after one pass."""
@@ -376,7 +379,7 @@ def test_noise_of_the_reference_is_no_error_of_others(gpu, monkeypatch, loss, to
             noise = 0.6 / np.sqrt(passes) * rng.standard_normal(even.shape) if state.model.stochastic else 0.0
             return plain(np.maximum(even * (1.0 if state.model.stochastic else 1 - loss) + noise, 0.0))
 
-    monkeypatch.setattr(module, "Shots", Pictures)
+    monkeypatch.setattr(judging, "Shots", Pictures)
     gpu.errors.pop("least", None)
     state = load("gold", load("one_light")).with_view("sphere", samples=4096).with_model(Walk())
     prices = Prices(1.0, {("body", "walk"): 0.0, ("body", "closed"): -0.9}, passes)
@@ -409,7 +412,7 @@ def test_work_is_done_in_small_steps(gpu, monkeypatch):
     monkeypatch.setattr(cls, "f", lambda model, wo, wi: counts.append(wi.size // 3) or f(model, wo, wi))
     state = load("gold", load("studio"))
     gpu.errors.pop("least", None)
-    bias = bias_of.Bias(state, module.FINE, 1)
+    bias = bias_of.Bias(state, FINE, 1)
     steps = bias.of(replace(state.model, shadowing="none"))
     done = 0
     while next(steps, ...) is None:

@@ -20,19 +20,11 @@ from test_oracles import Textbook
 from brdf_explorer.cli import main
 from brdf_explorer.export import font, labelled, render
 from brdf_explorer.glsl import assemble
+from brdf_explorer.measure import regimes
 from brdf_explorer.measure import stability as measured
-from brdf_explorer.measure.stability import (
-    FORMS,
-    LIMIT,
-    REGIMES,
-    UNIT,
-    WELL,
-    all_subjects,
-    evaluated,
-    examine,
-    stability,
-    subjects,
-)
+from brdf_explorer.measure.regimes import LIMIT, REGIMES, UNIT
+from brdf_explorer.measure.stability import WELL, evaluated, examine, stability
+from brdf_explorer.measure.subjects import FORMS, all_subjects, subjects
 from brdf_explorer.model import Param, declared
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Material, State, dumps, load, loads
@@ -316,7 +308,7 @@ def test_cells_come_coarse_first_and_are_kept(gpu):
 
 
 def test_broken_promise_is_told(gpu, monkeypatch):
-    monkeypatch.setattr(measured, "LIMIT", 1e-9)
+    monkeypatch.setattr(regimes, "LIMIT", 1e-9)
     cell = worst(gpu, "D ggx", "ordinary", "stable", (64, 0))
     assert cell.verdict == "error" and not cell.kept
 
@@ -389,7 +381,7 @@ def test_command_says_what_is_wrong(run):
 
 
 def test_command_fails_where_ours_breaks_its_promise(run, monkeypatch):
-    monkeypatch.setattr(measured, "LIMIT", 1e-9)
+    monkeypatch.setattr(regimes, "LIMIT", 1e-9)
     monkeypatch.setattr(measured, "_kept", {})
     run("chalk", status=1)
 

@@ -67,7 +67,7 @@ def stability(state, preset, everything, as_json, worst, ours, size, output):
 
 def chosen_cell(found, row, column, form):
     """The cell of a row, named by its function or its whole label, and a column. Raises UsageError."""
-    from ..measure.stability import REGIMES
+    from ..measure.regimes import REGIMES
     from ..model import nearest
 
     rows = [r for r in found.rows if row in (r, r.partition(" ")[0])]
@@ -85,7 +85,8 @@ def stability_tree(gpu, state, found):
     """All of a Map as JSON holds it; NaN and infinity are text."""
     from dataclasses import asdict
 
-    from ..measure.stability import LIMIT, REGIMES, WELL
+    from ..measure.regimes import LIMIT, REGIMES
+    from ..measure.stability import WELL
     from ..state import material_table
 
     def plain(value):
@@ -108,7 +109,8 @@ def stability_tree(gpu, state, found):
 
 
 def print_stability(found, name):
-    from ..measure.stability import FORMS, REGIMES
+    from ..measure.regimes import REGIMES
+    from ..measure.subjects import FORMS
     from ..views.stability import FORM_WORDS, summary
 
     columns = [column for column in REGIMES if any((row, column, FORMS[0]) in found.cells for row in found.rows)]

@@ -8,7 +8,8 @@ import numpy as np
 
 from ..measure.advice import EXACT, HEADS, amount, factor, rows, sentences, tone
 from ..measure.error import METRICS
-from ..measure.least import at, least, questions, settled
+from ..measure.least import least
+from ..measure.questions import at, questions, settled
 from ..model import Invalid, choice, param
 from .chart import LETTER, REDRAWN, cut, wrapped
 from .compare import HEAD, difference_map, layout, side_of

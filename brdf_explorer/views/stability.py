@@ -6,7 +6,9 @@ import numpy as np
 
 from ..lib.common import mirror
 from ..measure.grid import angles, direction
-from ..measure.stability import FORMS, LIMIT, REGIMES, stability
+from ..measure.regimes import LIMIT, REGIMES
+from ..measure.stability import stability
+from ..measure.subjects import FORMS
 from ..model import Param, choice, declared, param
 from .diagram import number
 from .drawing import Drawing, Drawn
