@@ -9,11 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from PIL import ImageFont
 
 from brdf_explorer.cli import main
 from brdf_explorer.environment import environment, turn
-from brdf_explorer.export import embedded
+from brdf_explorer.export import embedded, font
 from brdf_explorer.ladder import ESTIMATORS, LADDERS, Ladder, Method
 from brdf_explorer.lib.common import normalize, quotient, split
 from brdf_explorer.lib.environment import environment_lookup, sample_environment
@@ -291,7 +290,7 @@ def test_first_points_come_before_the_last(gpu):
 
 def boxes_of(picture, scale):
     for label in picture.labels:
-        left, top, right, bottom = ImageFont.load_default(label.size * scale).getbbox(label.text)
+        left, top, right, bottom = font(label.size * scale).getbbox(label.text)
         x, y = label.x - label.anchor[0] * (right - left), label.y - label.anchor[1] * (bottom - top)
         yield x, y, x + right - left, y + bottom - top, label.text
 

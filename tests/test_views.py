@@ -6,7 +6,6 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from PIL import ImageFont
 
 from brdf_explorer.export import font
 from brdf_explorer.glsl import Source
@@ -154,7 +153,7 @@ def check_labels(picture, size, scale):
     """Every label is inside of the picture, and no two overlap."""
     boxes = []
     for label in picture.labels:
-        left, top, right, bottom = ImageFont.load_default(label.size * scale).getbbox(label.text)
+        left, top, right, bottom = font(label.size * scale).getbbox(label.text)
         x, y = label.x - label.anchor[0] * (right - left), label.y - label.anchor[1] * (bottom - top)
         boxes.append((x, y, x + right - left, y + bottom - top, label.text))
     for box in boxes:

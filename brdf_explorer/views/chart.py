@@ -12,10 +12,9 @@ from ..measure.tradeoff import effort, seconds, tradeoffs
 from ..model import choice, param
 from .axes import Axes, Axis
 from .diagram import number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, cut, width_of, wrapped
 
 NOTHING = "No question with several methods arises for this material in this light."
-LETTER = 0.56  # width of a letter over the height of its line, more than the average
 UNITS = {"evaluation": ("cost of an evaluation", "ns", 1e9), "sample": ("cost of a sample", "ns", 1e9)}
 UNITS |= {"frame": ("cost of a frame", "ms", 1e3)}
 SPAN = 12  # most decades of error that are shown
@@ -300,7 +299,7 @@ def label(draw, blocked, words, places, color, size, mark=None):
     A line leads to a mark that is far, over other words if there is no other way; words hide the lines that they meet.
     """
     s = draw.scale
-    width, height = (LETTER * size * len(words) + 4) * s, 1.15 * size * s
+    width, height = (width_of(words, size) + 4) * s, 1.15 * size * s
     places = list(places)
     for of_lines, of_words in ((True, True), (False, True), (False, False)):
         for x, y, anchor in places:
@@ -323,24 +322,3 @@ def label(draw, blocked, words, places, color, size, mark=None):
             draw.text(words, (x, y), color, (anchor, 0.5), size)
             return box
     return None
-
-
-def cut(words, room, size):
-    """The words, or what of them has room on a line of `room` points."""
-    letters = max(int(room / (LETTER * size)), 1)
-    return words if len(words) <= letters else words[: letters - 1].rstrip(" ,;:") + "…"
-
-
-def wrapped(texts, room, size):
-    """Lines of `room` points of some texts, each of which begins a line of its own."""
-    lines = []
-    for text in texts:
-        line = ""
-        for word in text.split():
-            if line and LETTER * size * len(f"{line} {word}") > room:
-                lines.append(line)
-                line = word
-            else:
-                line = f"{line} {word}".strip()
-        lines.append(cut(line, room, size))
-    return lines

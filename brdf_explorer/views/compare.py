@@ -11,11 +11,11 @@ from ..model import Invalid, choice, param
 from .axes import Axes, Axis
 from .develop import develop
 from .diagram import QUANTITIES, number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, cut
 from .lines import draw_lines
 from .lobe import Camera, stage
 from .picture import PALETTES, rgb
-from .polar import LETTER, NODES
+from .polar import NODES
 from .table import tables
 
 PARTS = ("sphere", "difference", "lobes", "curves")
@@ -107,7 +107,7 @@ class Compare(Drawn):
         at = corner[0] + line
         draw.stroke([(at, corner[1]), (at, corner[1] + height)], draw.colors["paper"], 1.5)
         for state, name, edge, anchor in zip(states, "AB", (left, right), (0.0, 1.0), strict=True):
-            words = cut(f"{name}  {state.material.name}", (right - left) / (2 * s))
+            words = cut(f"{name}  {state.material.name}", (right - left) / (2 * s), 12.5)
             draw.text(words, (edge, top + 12 * s), color_of(state, draw.colors), (anchor, 0.5), 12.5)
 
     def lobes(self, draw, box, states, lobes):
@@ -166,12 +166,6 @@ def difference_map(gpu, draw, name, box, targets, pixels):
     gpu.draw(gpu.program(assemble("views/difference.frag")), target, uniforms, textures)
     draw.raster(np.round([(left + right - width) / 2, (bottom + top - height) / 2]), target)
     return largest / mean if mean > 0 else None
-
-
-def cut(words, room):
-    """Words that fit into `room` points, ending in an ellipsis if they are longer."""
-    letters = max(int(room / LETTER), 2)
-    return words if len(words) <= letters else words[: letters - 1].rstrip() + "…"
 
 
 def side_of(boxes):

@@ -10,6 +10,9 @@ from ..glsl import assemble
 from .lines import Stroke, draw_lines
 from .picture import PALETTES, Label, Link, Picture, View, rgb
 
+LETTER = 0.46
+"""Width of a letter over the height of its line: in prose it is 0.37 in the mean and 0.44 in one text of a hundred."""
+
 
 @dataclass(frozen=True)
 class Fill:
@@ -105,6 +108,32 @@ class Drawing:
                 else:
                     draw_raster(gpu, target, item)
         return Picture(target, labels=self.labels, links=self.links, note=note, done=done)
+
+
+def width_of(words, size):
+    """The width of a line of text `size` high, both in points: about, and rather more than less."""
+    return LETTER * size * len(words)
+
+
+def cut(words, room, size):
+    """The words, or what of them has room on a line of `room` points."""
+    letters = max(int(room / (LETTER * size)), 1)
+    return words if len(words) <= letters else words[: letters - 1].rstrip(" ,;:") + "…"
+
+
+def wrapped(texts, room, size):
+    """Lines of `room` points of some texts, each of which begins a line of its own."""
+    lines = []
+    for text in texts:
+        line = ""
+        for word in text.split():
+            if line and width_of(f"{line} {word}", size) > room:
+                lines.append(line)
+                line = word
+            else:
+                line = f"{line} {word}".strip()
+        lines.append(cut(line, room, size))
+    return lines
 
 
 def draw_raster(gpu, target, raster):

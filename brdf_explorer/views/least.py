@@ -11,10 +11,10 @@ from ..measure.error import METRICS
 from ..measure.least import least
 from ..measure.questions import at, questions, settled
 from ..model import Invalid, choice, param
-from .chart import LETTER, REDRAWN, cut, wrapped
+from .chart import REDRAWN
 from .compare import HEAD, difference_map, layout, side_of
 from .develop import develop
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, cut, width_of, wrapped
 
 PICTURED = tuple(name for name, metric in METRICS.items() if metric.compares == "pictures")
 TITLE, ROW, LINE = 30, 19, 15  # points: the heading, a row of the table, a line of words
@@ -236,7 +236,7 @@ class Page:
         """The table of ladders with its upper edge at `top`, points."""
         width = self.width
         columns = list(range(len(HEADS)))
-        wide = [max(LETTER * WORDS * len(row[i]) for row in [HEADS, *found]) + GAP for i in columns]
+        wide = [max(width_of(row[i], WORDS) for row in [HEADS, *found]) + GAP for i in columns]
         for i in (None, *SPARED):
             columns = [c for c in columns if c != i]
             if sum(wide[c] for c in columns) <= width - 2 * MARGIN + GAP:
@@ -259,7 +259,7 @@ class Page:
 
 def fitting(choices, room, size):
     """The first of some words that has `room` points, or what of the last has."""
-    return next((w for w in choices if LETTER * size * len(w) <= room), cut(choices[-1], room, size))
+    return next((w for w in choices if width_of(w, size) <= room), cut(choices[-1], room, size))
 
 
 def loading(other):

@@ -1,6 +1,5 @@
 """The readings: where a formula of the lecture errs or can be read in two ways, both, and what the wrong one costs."""
 
-import textwrap
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,10 +8,9 @@ from ..measure.readings import COARSE, FINE, found
 from ..model import choice
 from .axes import Axes, Axis
 from .diagram import number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, width_of, wrapped
 from .picture import Curves
 
-LETTER = 0.46  # width of a letter over the height of its line, on average
 LINE = 1.45  # from line to line, over a line's height
 MARGIN = 14  # points
 WIDE = 620  # points from which words and curves stand side by side
@@ -166,11 +164,11 @@ class Readings(Drawn):
         s, width = draw.scale, draw.size[0] / draw.scale
         y = draw.size[1] / s - 15
         parts = [(name, words.name) for name, words in WORDS.items()]
-        if sum(LETTER * 12 * len(w) + 18 for _, w in parts) > width - 2 * MARGIN:
+        if sum(width_of(w, 12.0) + 18 for _, w in parts) > width - 2 * MARGIN:
             parts = [(self.reading, WORDS[self.reading].name)]
         x = MARGIN
         for name, text in parts:
-            extent = LETTER * 12 * len(text)
+            extent = width_of(text, 12.0)
             here = name == self.reading
             draw.text(text, (x * s, y * s), "ink" if here else "accent", (0.0, 0.5), 12.0)
             if here:
@@ -192,7 +190,7 @@ class Readings(Drawn):
         column.y -= 8
         y = column.y
         column.line(text, "accent", 12.0)
-        box = np.array([MARGIN, column.y, MARGIN + LETTER * 12 * len(text), y]) * s
+        box = np.array([MARGIN, column.y, MARGIN + width_of(text, 12.0), y]) * s
         draw.link(box, "click: this material with these formulas, on the sphere", shown)
 
 
@@ -203,7 +201,7 @@ class Column:
         self.draw, self.left, self.right, self.y = draw, left, right, y
 
     def wrapped(self, text, size):
-        return textwrap.wrap(text, max(int((self.right - self.left) / (LETTER * size)), 12))
+        return wrapped([text], self.right - self.left, size)
 
     def line(self, text, color="ink", size=12.5, at=None, anchor=0.0):
         """A line; at: another place along it, which does not move on to the next."""
@@ -332,7 +330,7 @@ def plot(draw, box, f):
         color, words = STYLE.get(name) or (next(others), name)
         axes.line(f.x, curve, color, 2.2 if name in STYLE else 1.6)
         draw.text(words, (at * s, (frame[3] + 12) * s), color, (0.0, 0.5), 11.5)
-        at += LETTER * 11.5 * len(words) + 16
+        at += width_of(words, 11.5) + 16
 
 
 def ranged(values):

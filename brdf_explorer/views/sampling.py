@@ -15,7 +15,7 @@ from ..measure.sampling import chi_square
 from ..model import choice, param
 from .axes import TICK, Axes, Axis
 from .diagram import arrow, number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, width_of
 from .picture import Curves, rgb
 
 PANELS = {  # in the order of their importance where there is little room, with their titles
@@ -41,7 +41,6 @@ FACETS = 24  # of the profile
 BINS = 24  # of the histogram
 ROUNDING = 1e-12  # variance over the squared mean, and relative error, below which they are float64's rounding
 PER_DECADE = 12  # bins of the weights
-LETTER = 6.4  # points that a letter of the legend takes, on average
 
 
 @dataclass
@@ -206,10 +205,10 @@ def header(draw, state, found, colors):
         draw.text(words, (12 * s, draw.size[1] - (y - 6) * s), color, (0.0, 0.5), points)
     x, y = 12.0, y + 18
     for name, color in colors.items():
-        if x > 12 and x + LETTER * len(name) > width - 8:
+        if x > 12 and x + width_of(name, 12.5) > width - 8:
             x, y = 12.0, y + 17
         draw.text(name, (x * s, draw.size[1] - (y - 6) * s), color, (0.0, 0.5), 12.5)
-        x += LETTER * len(name) + 14
+        x += width_of(name, 12.5) + 14
     return y + 8
 
 

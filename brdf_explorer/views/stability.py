@@ -11,7 +11,7 @@ from ..measure.stability import stability
 from ..measure.subjects import FORMS
 from ..model import Param, choice, declared, param
 from .diagram import number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, width_of
 from .picture import rgb
 
 COLORS = {  # of verdicts; errors by decades
@@ -50,9 +50,10 @@ WORDS = {  # what stands in a cell, and what it means
     "ill": ("κ", "ill-conditioned"),
 }
 FORM_WORDS = {"stable": "as rearranged", "textbook": "as printed"}
-HEAD, SIDE, LETTER = 58, 10, 5.2  # points above the cells and beside them, and of a small letter
+HEAD, SIDE = 58, 10  # points above the cells and beside them
 LABELS, NARROW, LEAST_LABELS = 104, 82, 72  # points of the column of names, by the width
 ROW, MOST = 25, 58  # points of a row, at least and at most
+SMALL = 10.5  # height of the legend's letters, points
 LEAST = 26  # points of a column whose cells have letters; narrower ones have their colours and tooltips
 
 
@@ -86,7 +87,7 @@ class Stability(Drawn):
         across = max((width - labels - SIDE) / max(len(columns), 1), 1.0)
         told = across >= LEAST
         entries = legend(state.look.theme)
-        lines = flow([len(words) for _, _, words in entries], width - 2 * SIDE)
+        lines = flow([words for _, _, words in entries], width - 2 * SIDE)
         foot = 36 + 17 * (lines[-1][0] + 1)
         room = max(height - HEAD - foot, ROW)
         count = max(min(int(room / ROW), len(found.rows)), 1)
@@ -141,7 +142,7 @@ class Stability(Drawn):
                 for start, end in diagonals(area, 7 * scale):
                     draw.stroke([start, end], COLORS[state.look.theme]["hatch"], 0.8)
             words(text, SIDE + x + 16, y, contrast(color), points=9.5)
-            words(meaning, SIDE + x + 37, y, "muted", (0, 0.5), 10.5)
+            words(meaning, SIDE + x + 37, y, "muted", (0, 0.5), SMALL)
         note = f"{len(found.broken)} of ours fail" if found.broken else "all of ours keep their promise"
         if count < len(found.rows):
             note += f"; rows {first + 1} to {first + count} of {len(found.rows)}"
@@ -156,11 +157,11 @@ def legend(theme):
     return entries + [(text, colors[name], meaning) for name, (text, meaning) in WORDS.items()]
 
 
-def flow(letters, width):
-    """(line, x) of entries of some letters each, one after the other in lines."""
+def flow(meanings, width):
+    """(line, x) of entries of the legend, one after the other in lines."""
     line, x, places = 0, 0.0, []
-    for count in letters:
-        extent = 37 + count * LETTER + 12
+    for words in meanings:
+        extent = 37 + width_of(words, SMALL) + 12
         if x and x + extent > width:
             line, x = line + 1, 0.0
         places.append((line, x))
