@@ -115,7 +115,8 @@ class Gpu:
         self.sides = {}
         self.drawn = set()  # (program, size, format) of draws, for measure/cost.py, which empties it before some work
         self.costs = {}  # measured there
-        self.errors = {}  # of measure/tradeoff.py and measure/least.py
+        self.errors = {}  # of measure/tradeoff.py
+        self.evidence = {}  # of measure/judge.py
 
     def beside(self, name):
         """Another Gpu of this context, kept under a name: its targets are its own, programs and buffers are shared."""

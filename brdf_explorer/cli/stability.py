@@ -40,12 +40,14 @@ def stability(state, preset, everything, as_json, worst, ours, size, output):
         writable(output)
     if suffix == ".toml" and not worst:
         raise click.UsageError(f"{output}: a preset is of one cell: --worst ROW COLUMN")
+    form = "stable" if ours else "textbook"
+    wanted = chosen_cell(state.model, everything, *worst, form) if worst else None
     with offscreen() as gpu, progress() as show:
         check_size(gpu, size)
         for found in maps(gpu, state.model, everything=everything):
             show(f"{100 * found.progress:.0f} %")
         if worst:
-            cell = chosen_cell(found, *worst, "stable" if ours else "textbook")
+            cell = found.cells[wanted]
             shown, beyond = shown_at(state, cell)
             save(shown, output)
             click.echo("\n".join([f"{output}: the worst point of {cell.row} {cell.column}, {cell.verdict}", *beyond]))
@@ -65,20 +67,24 @@ def stability(state, preset, everything, as_json, worst, ours, size, output):
     return int(bool(found.broken))
 
 
-def chosen_cell(found, row, column, form):
-    """The cell of a row, named by its function or its whole label, and a column. Raises UsageError."""
+def chosen_cell(model, everything, row, column, form):
+    """The key of the cell of a row, named by its function or its whole label, and a column. Raises UsageError.
+
+    form: ours if the function has no printed one.
+    """
     from ..measure.regimes import REGIMES
+    from ..measure.subjects import all_subjects, subjects
     from ..model import nearest
 
-    rows = [r for r in found.rows if row in (r, r.partition(" ")[0])]
-    if not rows:
-        raise click.UsageError(f"{row}: no such row{nearest(row, list(found.rows))}")
+    rows = {s.label: s for s in (all_subjects if everything else subjects)(model)}
+    label = next((r for r in rows if row in (r, r.partition(" ")[0])), None)
+    if label is None:
+        raise click.UsageError(f"{row}: no such row{nearest(row, list(rows))}")
     if column not in REGIMES:
         raise click.UsageError(f"{column}: no such column{nearest(column, list(REGIMES))}")
-    cell = found.cells.get((rows[0], column, form)) or found.cells.get((rows[0], column, "stable"))
-    if cell is None:
-        raise click.UsageError(f"{rows[0]} has no argument that {column} is about")
-    return cell
+    if not REGIMES[column].concerns(rows[label]):
+        raise click.UsageError(f"{label} has no argument that {column} is about")
+    return label, column, form if form in rows[label].forms else "stable"
 
 
 def stability_tree(gpu, state, found):

@@ -77,10 +77,11 @@ def evidence(gpu, reference):
     They serve any tolerance, and any state that has this reference.
     """
     key = (reference.model, reference.light)
-    if gpu.errors.get("least", (None,))[0] != key:
+    if key not in gpu.evidence:
+        gpu.evidence.clear()
         biases = [Bias(reference, size, seed) for seed, size in enumerate((ROUGH, FINE), 1)]
-        gpu.errors["least"] = key, (Shots(gpu, reference), biases, {})
-    return gpu.errors["least"][1]
+        gpu.evidence[key] = Shots(gpu, reference), biases, {}
+    return gpu.evidence[key]
 
 
 class Judge:
