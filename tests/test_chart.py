@@ -340,8 +340,8 @@ def test_every_mark_is_a_link_to_its_method(gpu):
     later, elsewhere = state.with_view("lobe", radius="log"), state.with_model(DIFFUSE())
     for method in LADDERS["fresnel"].methods:
         mine = [k for k in links if k.tip.startswith(method.name)]
-        assert mine and all(k.state(later) == LADDERS["fresnel"].at(later, method) for k in mine)
-        assert all(k.state(elsewhere) == elsewhere for k in mine)
+        assert mine and all(k.change(later) == LADDERS["fresnel"].at(later, method) for k in mine)
+        assert all(k.change(elsewhere) == elsewhere for k in mine)
         assert all(("outside its domain: k is not 0" in k.tip) == (method.name == "dielectric") for k in mine)
         assert all("ns an evaluation, " in k.tip and "quartiles" in k.tip and "±" in k.tip for k in mine)
 
@@ -351,7 +351,7 @@ def test_marks_that_no_state_holds_say_so(gpu):
     links = last(state.views["chart"].pictures(gpu, state, (800, 600))).links
     for method in LADDERS["precision"].methods:
         for k in (k for k in links if k.tip.startswith(method.name)):
-            assert (k.state is None) == (method.name != "float32") == ("only measured" in k.tip)
+            assert (k.change is None) == (method.name != "float32") == ("only measured" in k.tip)
 
 
 def test_marks_outside_their_domain_are_hollow(gpu):

@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_views import check_labels
+from test_views import check_labels, check_links
 
 from brdf_explorer.cli import main
 from brdf_explorer.environment import environment, toward, turn
@@ -380,12 +380,12 @@ def test_noise_of_the_reference_is_no_error_of_others(gpu, monkeypatch, loss, to
             return plain(np.maximum(even * (1.0 if state.model.stochastic else 1 - loss) + noise, 0.0))
 
     monkeypatch.setattr(judging, "Shots", Pictures)
-    gpu.errors.pop("least", None)
+    gpu.evidence.clear()
     state = load("gold", load("one_light")).with_view("sphere", samples=4096).with_model(Walk())
     prices = Prices(1.0, {("body", "walk"): 0.0, ("body", "closed"): -0.9}, passes)
     asked = least(gpu, state, tolerance, ladders={"body": WALK}, prices=prices)
     answer = result(asked)
-    gpu.errors.pop("least", None)
+    gpu.evidence.clear()
     assert answer.steps[0].chosen.name == (enough or "walk")
     if enough:
         assert answer.steps[0].change == pytest.approx(loss, abs=0.01)
@@ -411,7 +411,7 @@ def test_work_is_done_in_small_steps(gpu, monkeypatch):
     f = cls.f
     monkeypatch.setattr(cls, "f", lambda model, wo, wi: counts.append(wi.size // 3) or f(model, wo, wi))
     state = load("gold", load("studio"))
-    gpu.errors.pop("least", None)
+    gpu.evidence.clear()
     bias = bias_of.Bias(state, FINE, 1)
     steps = bias.of(replace(state.model, shadowing="none"))
     done = 0
@@ -431,7 +431,7 @@ def quick(gpu, monkeypatch):
     monkeypatch.setattr(module, "TIMED", (32, 32))
     monkeypatch.setattr(module.cost, "LEAST", 3)
     monkeypatch.setattr(module.cost, "MOST", 3)
-    gpu.errors.pop("least", None)
+    gpu.evidence.clear()
     gpu.costs.clear()
 
 
@@ -453,16 +453,17 @@ def test_view_shows_progress_and_then_the_answer(gpu, quick):
 def test_pictures_load_their_states_and_nothing_is_measured_again(gpu, quick, monkeypatch):
     state = load("chalk", load("one_light")).with_view("least", tolerance=1.0)
     answer = result(state.views["least"].answer(gpu, state))
-    links = [link for link in drawn(gpu, state)[-1].links if link.state]
-    models = [link.state(state).model for link in links]
+    links = [link for link in drawn(gpu, state)[-1].links if link.change]
+    check_links(links, state)
+    models = [link.change(state).model for link in links]
     assert models == [answer.reference.model, answer.reduced.model]
     turned = replace(state, directions=replace(state.directions, theta_o=10.0))
     assert links[0].state(turned).directions == turned.directions
     monkeypatch.setattr(module, "timed", None)  # is not called any more
     for link in links:
-        pictures = drawn(gpu, link.state(turned))
+        pictures = drawn(gpu, link.change(turned))
         assert not any("Looking" in label.text for picture in pictures for label in picture.labels)
-        assert [k.state(state).model for k in pictures[-1].links if k.state] == models
+        assert [k.change(state).model for k in pictures[-1].links if k.change] == models
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])

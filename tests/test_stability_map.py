@@ -16,6 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracles.cases import CASES, case_label
 from test_oracles import Textbook
+from test_views import check_links
 
 from brdf_explorer.cli import main
 from brdf_explorer.export import font, labelled, render
@@ -293,11 +294,12 @@ def test_every_cell_of_the_picture_is_a_link(gpu):
     state = State()
     draw, note = Stability().drawing(found, state, (900, 700), 1.0)
     assert isinstance(draw, Drawing) and len(draw.links) == len(found.cells)
-    assert all(link.state is not None and "float64" in link.tip for link in draw.links)
+    assert all(link.change(state) != state and "float64" in link.tip for link in draw.links)
+    check_links(draw.links, state)
     shown = [(row, column) for row, column, _ in found.cells]
     assert len(set(shown)) < len(shown)  # two forms
     cell = next(iter(found.cells.values()))
-    assert f"among {cell.points} points" in tip(cell, found, state)
+    assert f"among {cell.points} points" in tip(cell, state)
 
 
 def test_cells_come_coarse_first_and_are_kept(gpu):
@@ -370,7 +372,8 @@ def test_command_writes_a_worst_point_as_a_preset(run):
     assert load("worst.toml").views["sphere"].formulas == "stable"
 
 
-def test_command_says_what_is_wrong(run):
+def test_command_says_what_is_wrong_and_measures_nothing(run, monkeypatch):
+    monkeypatch.setattr(measured, "stability", None)  # is not called
     assert "no such row" in run("gold", "--worst", "E", "alpha_0", "-o", "x.toml", status=2)
     assert "no such column" in run("gold", "--worst", "D", "alpha", "-o", "x.toml", status=2)
     assert "no argument" in run("gold", "--worst", "D", "eta_1", "-o", "x.toml", status=2)

@@ -149,6 +149,23 @@ def test_develop_is_exact_srgb_over_the_backdrop_and_shows_nan(gpu):
     np.testing.assert_allclose(out[1, 3, :3], 255 * half, atol=1.1)
 
 
+def check_links(links, state):
+    """Every click keeps what was changed since its picture was drawn and what it is not about."""
+    later = replace(
+        state,
+        materials=(*state.materials[: state.active], replace(state.material, name="Mine"), load("chalk").material),
+        light=replace(state.light, rotation=77.0, phi=-33.0),
+        look=replace(state.look, exposure=1.25),
+        directions=replace(state.directions, phi_o=12.0),
+    ).with_view("lobe", zoom=2.0)
+    clicks = [link.change for link in links if link.change]
+    assert clicks
+    for change in clicks:
+        after = change(later)
+        assert (after.look, after.materials[1:], after.material.name) == (later.look, later.materials[1:], "Mine")
+        assert (after.light.rotation, after.light.phi) == (77.0, -33.0) and after.views["lobe"] == later.views["lobe"]
+
+
 def check_labels(picture, size, scale):
     """Every label is inside of the picture, and no two overlap."""
     boxes = []
@@ -203,13 +220,13 @@ def test_a_drawing_draws_fills_lines_and_pictures_in_order(gpu):
     drawing.raster((20, 20), inner)
     drawing.stroke([(0, 25), (100, 25)], "#00ff00", 4.0)
     drawing.text("words", (50, 55), "muted")
-    drawing.link((10, 10, 60, 50), "tip", State())
+    drawing.link((10, 10, 60, 50), "tip", State)
     picture = drawing.picture(gpu, "test")
     pixels = gpu.pixels(picture.target)[..., :3]
     assert pixels[59 - 45, 15].tolist() == [255, 0, 0] and pixels[59 - 28, 30].tolist() == [0, 0, 255]
     assert pixels[59 - 25, 15].tolist() == [0, 255, 0] and pixels[59 - 55, 80].tolist() == [255, 255, 255]
     assert (picture.labels[0].x, picture.labels[0].y) == (50, 5)
-    assert linked(picture.links, (30, 20)).state == State() and linked(picture.links, (30, 5)) is None
+    assert linked(picture.links, (30, 20)).change is State and linked(picture.links, (30, 5)) is None
 
 
 @pytest.mark.parametrize("name", ["gold", "ceramic", "glass", "frosted_glass", "brushed_aluminium"])

@@ -111,10 +111,10 @@ class Canvas:
         link = hovered and self.picture and gestures.linked(self.picture.links, at)
         if link and link.tip:
             widgets.hint(*link.tip.split("\n"))
-        if (hovered or imgui.is_item_active()) and (link and link.state or self.name in gestures.DRAGGED):
+        if (hovered or imgui.is_item_active()) and (link and link.change or self.name in gestures.DRAGGED):
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
-        if link and link.state and imgui.is_item_clicked():
-            return link.state(state) if callable(link.state) else link.state
+        if link and link.change and imgui.is_item_clicked():
+            return link.change(state)
         moved = imgui.is_item_activated() or any(delta)
         if imgui.is_item_active() and moved:
             if self.name == "sphere" and state.light.irradiance > 0:

@@ -84,10 +84,10 @@ class Drawing:
         x, y = float(at[0]), self.size[1] - float(at[1])
         self.labels.append(Label(words, x, y, self.color(color), anchor, size))
 
-    def link(self, box, tip, state=None):
-        """A place that shows `tip` under the mouse, and that a click makes `state` the current one, if given."""
+    def link(self, box, tip, change=None):
+        """A place that shows `tip` under the mouse; a click makes change(state) the current state, if given."""
         left, bottom, right, top = map(float, box)
-        self.links.append(Link((left, self.size[1] - top, right, self.size[1] - bottom), tip, state))
+        self.links.append(Link((left, self.size[1] - top, right, self.size[1] - bottom), tip, change))
 
     def picture(self, gpu, name, note="", done=True):
         """The Picture of all this, in the target of that name."""

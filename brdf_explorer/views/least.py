@@ -43,8 +43,8 @@ class Least(Drawn):
 
     def drawings(self, gpu, state, size, scale=1.0):
         asked, _ = questions(state, self.metric)
-        most = at(state, asked, [q.top for q in asked])
-        reference = Sphere(gpu.beside("least reference"), most, settled(most))
+        top = [q.top for q in asked]
+        reference = Sphere(gpu.beside("least reference"), at(state, asked, top), using(asked, top))
         page = Page(self, gpu, state, size, scale)
         answering, answer = self.answer(gpu, state), None
         drawn, since = None, 0.0
@@ -61,7 +61,8 @@ class Least(Drawn):
                 drawn, since = page.progress(asked, reference, doing), time.perf_counter()
             yield drawn, doing, False
         noise = state.views["sphere"].noise  # what is shown may have as much as elsewhere
-        reduced = Sphere(gpu.beside("least reduced"), answer.reduced.with_view("sphere", noise=noise), answer.reduced)
+        chosen = using([s.question for s in answer.steps], [s.question.methods.index(s.chosen) for s in answer.steps])
+        reduced = Sphere(gpu.beside("least reduced"), answer.reduced.with_view("sphere", noise=noise), chosen)
         side = page.room(rows(answer), sentences(answer)).side
         drawn, done = None, False
         while not done:
@@ -74,10 +75,10 @@ class Least(Drawn):
 
 
 class Sphere:
-    """The picture of a state's sphere, better and better. loads: the state that a click on it leads to."""
+    """The picture of a state's sphere, better and better. change: what a click on it does to a state."""
 
-    def __init__(self, gpu, state, loads):
-        self.gpu, self.state, self.loads = gpu, state, loads
+    def __init__(self, gpu, state, change):
+        self.gpu, self.state, self.change = gpu, state, change
         self.run, self.picture, self.side = None, None, 0
 
     def better(self, side):
@@ -176,7 +177,7 @@ class Page:
         width, height = developed.size
         corner = np.round([(left + right - width) / 2, (bottom + top - height) / 2])
         draw.raster(corner, developed)
-        draw.link((*corner, *(corner + developed.size)), f"{methods}\nclick: to this state", loading(sphere.loads))
+        draw.link((*corner, *(corner + developed.size)), f"{methods}\nclick: to these methods", sphere.change)
 
     def difference(self, draw, box, answer, spheres):
         targets = [s.target for s in spheres]
@@ -262,6 +263,6 @@ def fitting(choices, room, size):
     return next((w for w in choices if width_of(w, size) <= room), cut(choices[-1], room, size))
 
 
-def loading(other):
-    """A function that gives a state the methods of another one of the same material."""
-    return lambda state: state.with_model(other.model).with_view("sphere", **vars(other.views["sphere"]))
+def using(asked, combination):
+    """A function that gives a state the methods of a combination, and all the samples that it says."""
+    return lambda state: settled(at(state, asked, combination))

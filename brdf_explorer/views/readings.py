@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..measure.readings import COARSE, FINE, found
+from ..measure.readings import COARSE, FINE, READINGS, found
 from ..model import choice
 from .axes import Axes, Axis
 from .diagram import number
@@ -117,7 +117,7 @@ class Readings(Drawn):
     reading: str = choice("stretching", tuple(WORDS), "the formula that has two readings")
 
     def shows(self, state):
-        return state  # what a click leads to holds all of it
+        return (self, state.material, state.directions, state.look.theme)
 
     def found(self, state, effort=FINE):
         """(measure.readings.Found, why it is of an example or "")."""
@@ -139,14 +139,14 @@ class Readings(Drawn):
         """Names of all readings, then words and curves of this one."""
         s, words = draw.scale, WORDS[self.reading]
         width, height = draw.size[0] / s, draw.size[1] / s
-        top = height - self.names(draw, state)
+        top = height - self.names(draw)
         wide = width >= WIDE
         head = list(heading(words, height < LOW[wide]))
         rest = [*costs(f), *about(state, f, example), *reason(words)]
         if wide:
             column = Column(draw, MARGIN, COLUMN * width - MARGIN, top)
             fill(column, MARGIN, head + rest)
-            self.sphere(draw, state, f, column)
+            self.sphere(draw, f, column)
             plot(draw, (COLUMN * width, 0.0, width, top), f)
             return
         column = Column(draw, MARGIN, width - MARGIN, top)
@@ -159,7 +159,7 @@ class Readings(Drawn):
         fill(column, foot, head + rest)
         plot(draw, (0.0, 0.0, width, column.y), f)
 
-    def names(self, draw, state):
+    def names(self, draw):
         """A line of the readings' names, each a link, as many as have room; its height in points."""
         s, width = draw.scale, draw.size[0] / draw.scale
         y = draw.size[1] / s - 15
@@ -175,23 +175,37 @@ class Readings(Drawn):
                 draw.stroke(np.array([(x, y - 10), (x + extent, y - 10)]) * s, "accent", 1.6)
             else:
                 box = np.array([x - 4, y - 10, x + extent + 4, y + 10]) * s
-                draw.link(box, WORDS[name].slide, state.with_view("readings", reading=name))
+                draw.link(box, WORDS[name].slide, reading_of(name))
             x += extent + 18
         return 36
 
-    def sphere(self, draw, state, f, column):
+    def sphere(self, draw, f, column):
         """A link to the sphere with the right reading, as printed, where it can be shown there."""
         words, s = WORDS[self.reading], draw.scale
         if words.sphere is None or column.y - MARGIN < 22:
             return
-        model = replace(f.model, **words.sphere)
-        shown = state.with_model(model).with_view("sphere", formulas="textbook")
         text = "the right one on the sphere, formulas as printed"
         column.y -= 8
         y = column.y
         column.line(text, "accent", 12.0)
         box = np.array([MARGIN, column.y, MARGIN + width_of(text, 12.0), y]) * s
-        draw.link(box, "click: this material with these formulas, on the sphere", shown)
+        draw.link(box, "click: this material with these formulas, on the sphere", self.printed(f.model))
+
+    def printed(self, example):
+        """A function that gives a state the right one of the formulas as printed; another material where it has none."""
+
+        def change(state):
+            model = example if READINGS[self.reading].applies(state.model) else state.model
+            return state.with_model(replace(model, **WORDS[self.reading].sphere)).with_view(
+                "sphere", formulas="textbook"
+            )
+
+        return change
+
+
+def reading_of(name):
+    """A function that shows a reading."""
+    return lambda state: state.with_view("readings", reading=name)
 
 
 class Column:

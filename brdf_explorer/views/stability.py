@@ -11,7 +11,7 @@ from ..measure.stability import stability
 from ..measure.subjects import FORMS
 from ..model import Param, choice, declared, param
 from .diagram import number
-from .drawing import Drawing, Drawn, width_of
+from .drawing import Drawing, Drawn, cut, width_of
 from .picture import rgb
 
 COLORS = {  # of verdicts; errors by decades
@@ -70,7 +70,7 @@ class Stability(Drawn):
     first: int = param(0, 0, 60, "rows that are passed over, where not all have room")
 
     def shows(self, state):
-        return state  # what a click leads to holds all of it
+        return (self, type(state.model), state.model.choices(), state.look.theme)
 
     def drawings(self, gpu, state, size, scale=1.0):
         for found in stability(gpu, state.model, everything=self.rows == "all"):
@@ -113,8 +113,7 @@ class Stability(Drawn):
             y = top - j * down
             name, _, chosen = row.partition(" ")
             words(name, SIDE, y - down / 2 + 6 * bool(chosen), anchor=(0, 0.5), points=11.5)
-            fits = int((labels - SIDE) / 4.7)
-            words(chosen[:fits], SIDE, y - down / 2 - 7, "muted", (0, 0.5), 9.5)
+            words(cut(chosen, labels - SIDE, 9.5), SIDE, y - down / 2 - 7, "muted", (0, 0.5), 9.5)
             for i, column in enumerate(columns):
                 cells = [found.cells.get((row, column, form)) for form in FORMS]
                 cells = [c for c in cells if c]
@@ -128,7 +127,7 @@ class Stability(Drawn):
                         hatches.append(area)
                     middle = ((area[0] + area[2]) / 2, (area[1] + area[3]) / 2)
                     texts.append((summary(cell, across > 41), middle, contrast(color)))
-                    draw.link(area, tip(cell, found, state), shown_at(state, cell)[0])
+                    draw.link(area, tip(cell, state), leading(cell, type(state.model)))
         for area in hatches:
             for start, end in diagonals(area, 7 * scale):
                 draw.stroke([start, end], COLORS[state.look.theme]["hatch"], 0.8)
@@ -221,7 +220,7 @@ def diagonals(box, step):
     return lines
 
 
-def tip(cell, found, state):
+def tip(cell, state):
     """What a cell has to say, line by line."""
     lines = [f"{cell.row}, {FORM_WORDS[cell.form]}: {REGIMES[cell.column].doc}"]
     wrong = {"NaN": cell.nan, "infinite": cell.infinite, "negative": cell.negative}
@@ -286,6 +285,11 @@ def shown_at(state, cell):
         state.light, theta=between, irradiance=state.light.irradiance or declared(state.light)["irradiance"].default
     )
     return replace(state, directions=viewer, light=light), beyond
+
+
+def leading(cell, cls):
+    """A function that leads a state to a cell's point, if it shows a material of that class."""
+    return lambda state: shown_at(state, cell)[0] if type(state.model) is cls else state
 
 
 def directions_of(arguments):
