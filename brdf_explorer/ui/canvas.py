@@ -12,6 +12,7 @@ from . import gestures, widgets
 from .theme import SMALL, colors, fonts, points, u32, vec
 
 BUDGET = 0.008  # seconds a frame that a picture may get better in
+PACE = 0.012  # seconds that one of its steps may take: three panels and the window itself then answer within 50 ms
 
 
 class Canvas:
@@ -34,7 +35,7 @@ class Canvas:
         fresh = key != self.key
         if fresh:
             self.key, self.error = key, ""
-            self.pictures = view.pictures(gpu, state, size, scale)
+            self.pictures = view.pictures(gpu.paced(PACE), state, size, scale)
         start = time.perf_counter()
         stepped = False
         while self.pictures is not None and time.perf_counter() - start < BUDGET:

@@ -1,0 +1,60 @@
+"""Drawings that take long, in steps between which the window answers: a small preview, then strip by strip."""
+
+import time
+
+import numpy as np
+
+MOST = 16  # pixels along a side that one of the preview stands for, at most
+
+
+class Pace:
+    """How a drawing by one program is divided, by how long it took before.
+
+    gpu: its `pace` is how long a step may take; without one nothing is divided.
+    weights: pixels to draw in each row (rows,), from the bottom.
+    """
+
+    def __init__(self, gpu, program, weights):
+        self.gpu, self.program = gpu, program
+        self.below = np.concatenate([[0.0], np.cumsum(weights)])
+
+    def timed(self, draw, pixels):
+        """Call draw() and keep what it takes by pixel."""
+        self.gpu.ctx.finish()
+        start = time.perf_counter()
+        draw()
+        self.gpu.ctx.finish()
+        self.gpu.speeds[self.program] = (time.perf_counter() - start) / max(pixels, 1.0)
+
+    def preview(self, draw):
+        """Pixels along a side that one of a preview stands for, so that it is a step; 1 if the whole drawing is one.
+
+        A program that was not drawn before is: draw(n) is called with the largest number, twice, because drivers compile at the
+        first drawing.
+        """
+        if self.gpu.pace is None:
+            return 1
+        whole = self.below[-1]
+        if self.program not in self.gpu.speeds:
+            for _ in range(2):
+                self.timed(lambda: draw(MOST), whole / MOST**2)
+        over = self.gpu.speeds[self.program] * whole / self.gpu.pace
+        return int(min(2 ** np.ceil(np.log2(max(over, 1.0)) / 2), MOST))
+
+    def strips(self, draw, width):
+        """Call draw(box) for strips of rows from the bottom up, each a step; yield whether it was the last.
+
+        box: left, bottom, right, top in pixels; None if all is one step.
+        """
+        rows = len(self.below) - 1
+        if self.gpu.pace is None:
+            draw(None)
+            yield True
+            return
+        bottom = 0
+        while bottom < rows:
+            reach = self.below[bottom] + self.gpu.pace / self.gpu.speeds[self.program]
+            top = max(int(np.searchsorted(self.below, reach, "right")) - 1, bottom + 1)
+            self.timed(lambda box=(0, bottom, width, top): draw(box), self.below[top] - self.below[bottom])
+            bottom = top
+            yield bottom == rows
