@@ -113,7 +113,9 @@ class Gpu:
         self.buffers = {}
         self.arrays = {}
         self.sides = {}
-        self.pace = None  # seconds that a step of a picture may take where a view divides them; None: a step is a whole drawing
+        self.pace = (
+            None  # seconds that a step of a picture may take where a view divides them; None: a step is a whole drawing
+        )
         self.speeds = {}  # program -> seconds a pixel, measured by views/pace.py
         self.drawn = set()  # (program, size, format) of draws, for measure/cost.py, which empties it before some work
         self.costs = {}  # measured there

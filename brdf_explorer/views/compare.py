@@ -1,5 +1,6 @@
 """Two materials A and B: their spheres with a line between them, their lobes and slices over each other, and the difference."""
 
+import time
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from ..glsl import assemble
 from ..lib.srgb import luminance
 from ..measure import error
+from ..measure.laws import Shader
 from ..model import Invalid, choice, param
 from .axes import Axes, Axis
 from .develop import develop
@@ -14,13 +16,16 @@ from .diagram import QUANTITIES, number
 from .drawing import Drawing, Drawn, cut
 from .lines import draw_lines
 from .lobe import Camera, stage
+from .pace import in_turn
 from .picture import PALETTES, rgb
 from .polar import NODES
-from .table import tables
+from .table import progressive
 
 PARTS = ("sphere", "difference", "lobes", "curves")
 THROUGH = 0.55  # opacity of the lobe of B, through which A is seen
 LEAST = 1e-12  # of the reference's mean: a difference below it has no colours
+ESTIMATES = 64  # of a stochastic f, whose noise its numbers hold
+REDRAWN = 0.1  # seconds between drawings while the parts get better
 GAP, HEAD = 14, 24  # points between the parts, and above each for its title
 NUMBERS, WORDS = 5, 218  # lines of numbers below all, and points that one is wide
 
@@ -65,34 +70,54 @@ class Compare(Drawn):
             yield draw, "", True
             return
         states = state, replace(state, active=b)
-        boxes, columns, rows = self.boxes(size, scale)
+        shown, drawn, since = {}, None, 0.0
+        for found, done in in_turn(gpu, self.runs(gpu, states, size, scale)):
+            fresh = any(found[name] is not shown.get(name) for name in found)
+            complete = any(not name.endswith(" A") for name in found.keys() - shown.keys())
+            if drawn is None or done or complete or fresh and time.perf_counter() - since > REDRAWN:
+                drawn, shown, since = self.drawing(gpu, states, size, scale, found), found, time.perf_counter()
+            yield drawn, "", done
+
+    def runs(self, gpu, states, size, scale):
+        """Generators of what is shown, of A and of B: pictures of spheres, Tables of slices and of lobes; and the numbers."""
+        boxes, *_ = self.boxes(size, scale)
         side = side_of(boxes)
-        sides = gpu.beside("compare A"), gpu.beside("compare B")
-        lobes = both_lobes(gpu, sides, states, boxes["lobes"], scale) if "lobes" in boxes else None
-        slices = [[t.plane() for t in tables(gpu, s.model, s.directions, rays=2, nodes=NODES)] for s in states]
-        numbers = difference_of_values(*(s.model for s in states))
-        runs = [s.views["sphere"].pictures(g, s, (side, side), scale) for g, s in zip(sides, states, strict=True)]
-        one, other, done = next(runs[0]), next(runs[1]), False
-        while not done:
-            draw = Drawing(size, scale, state.look.theme)
-            done = one.done and other.done
-            if "sphere" in boxes:
-                self.spheres(draw, boxes["sphere"], states, sides, (one, other))
-            if "lobes" in boxes:
-                self.lobes(draw, boxes["lobes"], states, lobes)
+        runs = {}
+        for name, g, s in zip("AB", sides_of(gpu), states, strict=True):
+            if "sphere" in boxes or "difference" in boxes:
+                runs["sphere " + name] = s.views["sphere"].pictures(g, s, (side, side), scale)
             if "curves" in boxes:
-                self.curves(draw, boxes["curves"], states, slices)
-            words = numbers
+                runs["curves " + name] = progressive(gpu, s.model, s.directions, rays=2, nodes=NODES)
+        if "lobes" in boxes:
+            runs["lobes"] = both_lobes(gpu, states, boxes["lobes"], scale)
+        return runs | {"numbers": differences_of_values(gpu, *(s.model for s in states))}
+
+    def drawing(self, gpu, states, size, scale, found):
+        """The Drawing of what is `found`, the latest of each of the `runs`."""
+        draw = Drawing(size, scale, states[0].look.theme)
+        boxes, columns, rows = self.boxes(size, scale)
+        known = {part: [found[f"{part} {n}"] for n in "AB"] for part in PARTS if f"{part} B" in found}
+        words = found.get("numbers", [])
+        if "sphere" in known:
+            if "sphere" in boxes:
+                self.spheres(draw, boxes["sphere"], states, sides_of(gpu), known["sphere"])
             if "difference" in boxes:
-                targets = [g.target("sphere", (side, side)) for g in sides]  # without what lies behind
+                side = side_of(boxes)
+                targets = [g.target("sphere", (side, side)) for g in sides_of(gpu)]  # without what lies behind
                 pixels = [gpu.pixels(target) for target in targets]
                 self.difference(draw, gpu, boxes["difference"], targets, pixels)
-                words = [*numbers, *difference_of_pictures(*pixels)] if done else numbers
-            for i, text in enumerate(words):
-                at = (12 + i % columns * WORDS, 6 + 16 * (rows - i // columns))
-                draw.text(text, np.multiply(at, scale) - [0, 8 * scale], "muted", (0.0, 0.5), 11.5)
-            yield draw, "", done
-            one, other = next(runs[0], one), next(runs[1], other)  # one of them may be done before the other
+                words = words + difference_of_pictures(*pixels) * all(p.done for p in known["sphere"])
+        if "lobes" in known:
+            tables = [found for found, _ in known["lobes"]]
+            self.lobes(
+                draw, boxes["lobes"], states, both_lobes(gpu, sides_of(gpu), states, boxes["lobes"], scale, tables)
+            )
+        if "curves" in known:
+            self.curves(draw, boxes["curves"], states, [[t.plane() for t in tables] for tables, _ in known["curves"]])
+        for i, text in enumerate(words):
+            at = (12 + i % columns * WORDS, 6 + 16 * (rows - i // columns))
+            draw.text(text, np.multiply(at, scale) - [0, 8 * scale], "muted", (0.0, 0.5), 11.5)
+        return draw
 
     def spheres(self, draw, box, states, sides, pictures):
         """A left of the line, B right of it."""
@@ -168,38 +193,54 @@ def difference_map(gpu, draw, name, box, targets, pixels):
     return largest / mean if mean > 0 else None
 
 
+def sides_of(gpu):
+    """A Gpu for A and one for B, each with targets of its own."""
+    return gpu.beside("compare A").paced(gpu.pace), gpu.beside("compare B").paced(gpu.pace)
+
+
 def side_of(boxes):
     """The side of a square picture in each of the boxes, pixels."""
     return int(max(min(min(right - left, top - bottom) for left, bottom, right, top in boxes.values()), 8))
 
 
-def both_lobes(gpu, sides, states, box, scale):
-    """A framebuffer as large as the box with both lobes to one scale, A seen through B, and its Labels."""
+def both_lobes(gpu, states, box, scale):
+    """Yield a framebuffer as large as the box with both lobes to one scale, A seen through B, and its Labels: better ones."""
     colors = PALETTES[states[0].look.theme]
     left, bottom, right, top = box
     size = (max(int(right - left), 8), max(int(top - bottom), 8))
     lobe = states[0].views["lobe"]
-    found = [tables(gpu, state.model, state.directions) for state in states]
-    peak = max(lobe.peak(t) for parts in found for t in parts) or 1.0
-    camera = Camera(lobe, size, scale, bar=0, both=max(map(len, found)) > 1)
-    below, above, labels = stage(camera, found[0][0].wo, colors)
     target = gpu.target("compare lobes", size, 4, "f1")
-    target.clear(*rgb(colors["paper"]), 1.0)
-    over = gpu.program(assemble("views/over.frag"))
-
-    def draw(which):
-        for state, parts, side, share in zip(states, found, sides, (1.0, THROUGH), strict=True):
-            for t in parts[which]:
-                *_, (layer, _) = lobe.surfaces(
-                    side, t, camera, 1 / peak, "plain", {"ink": rgb(color_of(state, colors))}
-                )
-                gpu.draw(over, target, {"share": share}, {"picture": layer.color_attachments[0]}, blend="premultiplied")
-
-    draw(slice(1, 2))  # below the surface, and seen through it
-    draw_lines(gpu, target, below)
-    draw(slice(0, 1))
-    draw_lines(gpu, target, above)
-    return target, labels
+    runs = [progressive(gpu, state.model, state.directions) for state in states]
+    last = [next(run) for run in runs]
+    while True:
+        found, finals = zip(*last, strict=True)
+        peak = max(lobe.peak(t) for parts in found for t in parts) or 1.0
+        camera = Camera(lobe, size, scale, bar=0, both=max(map(len, found)) > 1)
+        below, above, labels = stage(camera, found[0][0].wo, colors)
+        surfaces = [
+            lobe.surfaces(g.beside(f"lobe {i}"), t, camera, 1 / peak, "plain", {"ink": rgb(color_of(state, colors))})
+            for g, state, parts in zip(sides_of(gpu), states, found, strict=True)
+            for i, t in enumerate(parts)
+        ]
+        shares = [share for share, parts in zip((1.0, THROUGH), found, strict=True) for _ in parts]
+        far = [i > 0 for parts in found for i in range(len(parts))]
+        for n, layers in enumerate(zip(*surfaces, strict=True)):
+            if n == 0 or layers[0][1]:
+                seen = list(zip(far, shares, (layer for layer, _ in layers), strict=True))
+                target.clear(*rgb(colors["paper"]), 1.0)
+                for side, lines in ((True, below), (False, above)):  # what lies beyond the surface is seen through it
+                    for beyond, share, layer in seen:
+                        if beyond == side:
+                            picture = {"picture": layer.color_attachments[0]}
+                            over = gpu.program(assemble("views/over.frag"))
+                            gpu.draw(over, target, {"share": share}, picture, blend="premultiplied")
+                    draw_lines(gpu, target, lines)
+            yield target, labels
+            if not all(finals):
+                break
+        if all(finals):
+            return
+        last = [next(run, one) for run, one in zip(runs, last, strict=True)]
 
 
 def color_of(state, colors):
@@ -225,15 +266,25 @@ def layout(size, scale, count, foot):
     return boxes
 
 
-def difference_of_values(a, b):
-    """Lines that say how far f of the model b is from that of a."""
-    alpha = np.minimum(a.slopes(), b.slopes())
-    index = a.index() or b.index()
-    found, reference = error.values(b, alpha, index=index), error.values(a, alpha, index=index)
-    return [
-        f"{m.title}: {number(m.function(found, reference), 2)}"
-        for m in (error.METRICS[n] for n in ("rmse", "maximum", "energy"))
-    ]
+def differences_of_values(gpu, a, b):
+    """Yield lines that say how far the shader's f of the model b is from that of a, better and better where they are estimates.
+
+    Estimates of both draw the same numbers, so that they differ by what they do and not by chance.
+    """
+    alpha, index = np.minimum(a.slopes(), b.slopes()), a.index() or b.index()
+    most, rays = (ESTIMATES, error.RAYS // 2) if a.stochastic or b.stochastic else (1, error.RAYS)
+    sums, lines = [0, 0], []
+    for n in range(1, most + 1):
+        for i, model in enumerate((a, b)):
+            once = error.values(Shader(gpu, model), alpha, rays, index=index, seed=2 * n, estimates=1)
+            sums[i] = sums[i] + once.f
+            yield lines
+        reference, found = (replace(once, f=total / n) for total in sums)
+        lines = [
+            f"{m.title}: {number(m.function(found, reference), 2)}"
+            for m in (error.METRICS[name] for name in ("rmse", "maximum", "energy"))
+        ]
+    yield lines
 
 
 def difference_of_pictures(a, b):

@@ -1,6 +1,7 @@
 """Drawings that take long, in steps between which the window answers: a small preview, then strip by strip."""
 
 import time
+from collections import deque
 
 import numpy as np
 
@@ -58,3 +59,23 @@ class Pace:
             self.timed(lambda box=(0, bottom, width, top): draw(box), self.below[top] - self.below[bottom])
             bottom = top
             yield bottom == rows
+
+
+def in_turn(gpu, runs):
+    """Advance generators, {name: generator}, in turns; yield ({name: what it gave last}, done) whenever a step's time is over.
+
+    Where steps have no time to keep, after each round.
+    """
+    queue, latest = deque(runs.items()), {}
+    while queue:
+        start, left = time.perf_counter(), len(queue)
+        while queue and (left > 0 if gpu.pace is None else time.perf_counter() - start < gpu.pace):
+            name, run = queue.popleft()
+            found = next(run, None)
+            if found is not None:
+                latest[name] = found
+                queue.append((name, run))
+            if gpu.pace is not None:
+                gpu.ctx.finish()
+            left -= 1
+        yield dict(latest), not queue

@@ -1,6 +1,7 @@
 """The slice through the plane of incidence as a polar plot: f or f cos over the direction to the light."""
 
 from dataclasses import dataclass
+from itertools import count
 from typing import NamedTuple
 
 import numpy as np
@@ -101,16 +102,17 @@ class Polar(Drawn, Diagram):
         nodes = FEW if model.stochastic else NODES
         runs = [progressive(gpu, m, state.directions, 2, nodes, passes=passes) for m in shown.values()]
         last = [next(run) for run in runs]
-        while True:
+        for turn in count():  # one part in each step, as each takes as long as the whole
             sides = zip(*(tables for tables, _ in last), strict=True)
             found = [
                 s for tables in sides for s in self.of_tables(material, index, dict(zip(shown, tables, strict=True)))
             ]
             done = all(final for _, final in last)
-            yield found, last[0][0][0].walks, done
+            yield found, min(tables[0].walks for tables, _ in last), done
             if done:
                 return
-            last = [next(run, (one, True)) for run, (one, _) in zip(runs, last, strict=True)]
+            at = turn % len(runs)
+            last[at] = next(runs[at], (last[at][0], True))
 
     @np.errstate(under="ignore")  # in the tails of a density
     def of_tables(self, material, index, tables):

@@ -5,6 +5,7 @@ as rough there (shaders/views/body_ball.glsl).
 """
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -76,7 +77,8 @@ class Sphere(View):
         for n in range(1, most + 1):
             jitter = (R2 * (n - 1) + 0.5) % 1.0 - 0.5
             uniforms |= {"jitter": tuple(jitter), "share": 1 / n, "pass": n - 1}
-            if n == 1 and (side := pace.preview(lambda pixels: small(gpu, program, size, uniforms, textures, pixels))) > 1:
+            side = pace.preview(partial(small, gpu, program, size, uniforms, textures)) if n == 1 else 1
+            if side > 1:
                 magnify(gpu, target, small(gpu, program, size, uniforms, textures, side), side, uniforms)
                 shown = self.over_background(gpu, target, uniforms, textures)
                 picture = Picture(shown, linear=True, note=f"1 sample in {side} x {side} pixels", done=False)
