@@ -13,6 +13,7 @@ from .theme import SMALL, colors, fonts, points, u32, vec
 
 BUDGET = 0.008  # seconds a frame that a picture may get better in
 PACE = 0.012  # seconds that one of its steps may take: three panels and the window itself then answer within 50 ms
+END = object()
 
 
 class Canvas:
@@ -40,14 +41,15 @@ class Canvas:
         stepped = False
         while self.pictures is not None and time.perf_counter() - start < BUDGET:
             try:
-                picture = next(self.pictures, None)
+                picture = next(self.pictures, END)
             except Invalid as error:
                 self.error, self.pictures = str(error), None
                 break
-            if picture is not None:
-                self.picture, stepped = picture, True
-            if picture is None or picture.done:
+            if picture is END:
                 self.pictures = None
+            elif picture is not None:  # until then the one before stays
+                self.picture, stepped = picture, True
+                self.pictures = None if picture.done else self.pictures
             gpu.ctx.finish()
         if self.picture is None:
             return None

@@ -148,13 +148,13 @@ class Drawn(View):
     def drawings(self, gpu, state, size, scale=1.0) -> Iterator[tuple[Drawing, str, bool]]:
         """Drawings of the state, from the first to the best, each with its note and whether it is the last.
 
-        The same Drawing again is not drawn again.
+        The same Drawing again is not drawn again; None is one that is not ready, where steps have a time to keep.
         """
         raise NotImplementedError
 
     def pictures(self, gpu, state, size, scale=1.0):
         drawn = None
         for drawing, note, done in self.drawings(gpu, state, size, scale):
-            if drawing is not drawn:
+            if drawing and drawing is not drawn:
                 drawn, picture = drawing, drawing.picture(gpu, self.name(), note, done)
-            yield replace(picture, note=note, done=done)
+            yield drawing and replace(picture, note=note, done=done)

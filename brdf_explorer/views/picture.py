@@ -113,6 +113,9 @@ class View(Declared):
         """The values that its picture depends on; while they stay equal, so does the picture."""
         raise NotImplementedError
 
-    def pictures(self, gpu, state, size, scale=1.0) -> Iterator[Picture]:
-        """Pictures of the state, from the first to the best. size: pixels; scale: pixels per point of lines and text."""
+    def pictures(self, gpu, state, size, scale=1.0) -> Iterator[Picture | None]:
+        """Pictures of the state, from the first to the best. size: pixels; scale: pixels per point of lines and text.
+
+        Where steps have a time to keep (Gpu.pace), a step that ends before the first picture is there gives None.
+        """
         raise NotImplementedError
