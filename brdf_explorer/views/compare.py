@@ -107,11 +107,8 @@ class Compare(Drawn):
                 pixels = [gpu.pixels(target) for target in targets]
                 self.difference(draw, gpu, boxes["difference"], targets, pixels)
                 words = words + difference_of_pictures(*pixels) * all(p.done for p in known["sphere"])
-        if "lobes" in known:
-            tables = [found for found, _ in known["lobes"]]
-            self.lobes(
-                draw, boxes["lobes"], states, both_lobes(gpu, sides_of(gpu), states, boxes["lobes"], scale, tables)
-            )
+        if "lobes" in found:
+            self.lobes(draw, boxes["lobes"], states, found["lobes"])
         if "curves" in known:
             self.curves(draw, boxes["curves"], states, [[t.plane() for t in tables] for tables, _ in known["curves"]])
         for i, text in enumerate(words):

@@ -56,17 +56,17 @@ class Lobe(Diagram):
         surfaces = [self.surfaces(gpu.beside(f"lobe {i}"), t, camera, share) for i, t in enumerate(values)]
         picture = None
         for layers in zip(*surfaces, strict=True):
-            layer, done = layers[0]
+            (near, done), *far = layers
             if picture and not done:
                 yield picture
                 continue
             target.clear(*rgb(colors["paper"]), 1.0)
-            for layer, _ in layers[1:]:  # seen through the surface
+            for layer, _ in far:  # seen through the surface
                 picture = {"picture": layer.color_attachments[0]}
                 gpu.draw(over, target, {"share": 1.0}, picture, blend="premultiplied")
                 draw_lines(gpu, target, outlines[1:])
             draw_lines(gpu, target, below)
-            gpu.draw(over, target, {"share": 1.0}, {"picture": layer.color_attachments[0]}, blend="premultiplied")
+            gpu.draw(over, target, {"share": 1.0}, {"picture": near.color_attachments[0]}, blend="premultiplied")
             draw_lines(gpu, target, above)
             legend = self.draw_bar(gpu, target, size, scale, peak, colors)
             picture = Picture(target, labels=labels + legend, done=done)

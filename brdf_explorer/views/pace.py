@@ -61,6 +61,12 @@ class Pace:
             yield bottom == rows
 
 
+def chords(height, radius):
+    """Pixels of each of `height` rows (height,) that lie within a disc about their middle."""
+    y = np.arange(height) + 0.5 - height / 2
+    return 2 * np.sqrt(np.maximum(radius**2 - y**2, 0.0))
+
+
 def in_turn(gpu, runs):
     """Advance generators, {name: generator}, in turns; yield ({name: what it gave last}, done) whenever a step's time is over.
 

@@ -13,7 +13,7 @@ from ..environment import environment, toward, turn
 from ..glsl import assemble, of_model
 from ..model import choice, param
 from .diagram import number
-from .pace import Pace
+from .pace import Pace, chords
 from .picture import R2, Picture, View
 
 SIDES = 32  # of the polygon that disc.vert draws around the sphere
@@ -108,12 +108,6 @@ class Sphere(View):
         over = gpu.program(assemble("views/over.frag"))
         gpu.draw(over, shown, {"share": 1.0}, {"picture": target.color_attachments[0]}, blend="premultiplied")
         return shown
-
-
-def chords(height, radius):
-    """Pixels of each of `height` rows (height,) that lie within a disc about their middle."""
-    y = np.arange(height) + 0.5 - height / 2
-    return 2 * np.sqrt(np.maximum(radius**2 - y**2, 0.0))
 
 
 def small(gpu, program, size, uniforms, textures, pixels):
