@@ -458,7 +458,7 @@ def test_pictures_load_their_states_and_nothing_is_measured_again(gpu, quick, mo
     models = [link.change(state).model for link in links]
     assert models == [answer.reference.model, answer.reduced.model]
     turned = replace(state, directions=replace(state.directions, theta_o=10.0))
-    assert links[0].state(turned).directions == turned.directions
+    assert links[0].change(turned).directions == turned.directions
     monkeypatch.setattr(module, "timed", None)  # is not called any more
     for link in links:
         pictures = drawn(gpu, link.change(turned))
