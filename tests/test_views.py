@@ -17,6 +17,7 @@ from brdf_explorer.models import MODELS
 from brdf_explorer.state import Directions, Light, Look, Material, State, load
 from brdf_explorer.ui.gestures import linked, swipe
 from brdf_explorer.views import VIEWS
+from brdf_explorer.views.compare import ESTIMATES, both_lobes, differences_of_values
 from brdf_explorer.views.develop import develop
 from brdf_explorer.views.drawing import Drawing
 from brdf_explorer.views.picture import PALETTES, Picture, rgb
@@ -308,6 +309,37 @@ def test_compare_has_room_for_its_words(gpu, size):
         assert box[0] >= 0 and box[1] >= 0 and box[2] <= size[0] and box[3] <= size[1], box
     for a, b in combinations(boxes, 2):
         assert a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] + 2 or b[3] <= a[1] + 2, (a, b)
+
+
+def test_compare_of_walks_goes_on_and_tells_no_noise_of_a_copy(gpu):
+    """Of a walk and its like by other parameters of no effect the halves' products are 0; of others they are the difference."""
+    walk = MODELS["multiscatter"](alpha=0.5, fresnel="one")
+    near, far = MODELS["microfacet"](alpha=0.5, fresnel="one"), replace(walk, orders=1)
+    (*_, one) = differences_of_values(gpu, walk, near)
+    (*_, other) = differences_of_values(gpu, far, near)
+    lost, none = (float(lines[0].split(": ")[1]) for lines in (one, other))
+    assert none < 0.02 < 0.05 < lost  # order 1 is the microfacet model; the others add some percent
+    assert one[-1] == f"f by {ESTIMATES} walks a direction" and not any("relative error of f" in line for line in one)
+
+
+@pytest.mark.parametrize("alpha, apart", [(0.3, False), (0.01, True)])
+def test_lobes_of_unlike_peaks_are_each_over_its_own(gpu, alpha, apart):
+    """Then both are seen: the colours of A and of B cover many pixels."""
+    state = two(a=MICROFACET(alpha=0.3, fresnel="one"), b=MICROFACET(alpha=alpha, fresnel="one"))
+    (*_, (target, _, found)) = both_lobes(gpu, (state, replace(state, active=1)), (0, 0, 300, 300), 1.0)
+    assert found == apart
+    pixels = gpu.pixels(target)[..., :3].astype(int)
+    for b, color in enumerate(PALETTES["light"]["curves"][: 2 * apart]):
+        near = np.linalg.norm(pixels / 255.0 - rgb(color), axis=-1) < 0.35
+        assert near.sum() > 30, b
+
+
+@pytest.mark.parametrize("size, parts", [((900, 640), 4), ((400, 300), 4), ((282, 215), 2)])
+def test_compare_shows_as_many_parts_as_have_room(size, parts):
+    boxes, columns, rows = GREY.views["compare"].boxes(size)
+    assert len(boxes) == parts
+    assert columns * rows >= 2
+    assert all(min(right - left, top - bottom) >= 70 for left, bottom, right, top in boxes.values())
 
 
 def test_a_drag_moves_the_line(gpu):

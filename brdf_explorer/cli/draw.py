@@ -2,22 +2,30 @@
 
 import os
 import sys
+from dataclasses import replace
 
 import click
 
 from .flags import Flagged, loaded
-from .options import Number, Size, ViewName, output_option, preset_argument, scene_option, seconds_option
+from .options import Number, Size, ViewName, output_option, preset_argument, scene_option, seconds_option, with_option
 from .output import progress
+
+
+def beside(state, others):
+    """The state with materials of other presets after its own."""
+    return replace(state, materials=(*state.materials, *(m for name in others for m in loaded(name).materials)))
 
 
 @click.command("open", cls=Flagged, sections=("material", "directions", "light", "look"), scene="studio")
 @click.argument("preset", required=False)
 @scene_option
-def open_(state, preset):
+@with_option
+def open_(state, preset, others):
     """Open the window, or with no display draw a gallery.
 
     The gallery goes to the folder gallery/.
     """
+    state = beside(state, others)
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         click.echo(
             "No display: neither DISPLAY nor WAYLAND_DISPLAY is set. Drawing a gallery into gallery/, which takes a minute or so."
@@ -34,6 +42,7 @@ def open_(state, preset):
 @click.command(cls=Flagged, sections=("material", "directions", "light", "look", "view"))
 @preset_argument
 @scene_option
+@with_option
 @click.option("--view", type=ViewName(), default="sphere", show_default=True, help="What to draw, such as lobe.")
 @click.option("--size", type=Size(), default="512x512", show_default=True, help="Pixels.")
 @click.option(
@@ -41,7 +50,7 @@ def open_(state, preset):
 )
 @seconds_option
 @output_option
-def render(state, preset, view, size, scale, seconds, output):
+def render(state, preset, others, view, size, scale, seconds, output):
     """Draw a view of PRESET into a file.
 
     FILE is a .png or .exr picture; for polar also an .svg or .pdf drawing, or a .csv table of its curves.
@@ -49,6 +58,7 @@ def render(state, preset, view, size, scale, seconds, output):
     from ..export import save_view
     from ..gpu import offscreen
 
+    state = beside(state, others)
     with offscreen() as gpu, progress() as show:
         note = save_view(gpu, state, view, output, size, scale, seconds, lambda note: show(f"{view}: {note}"))
     click.echo(f"{output}: {size[0]} x {size[1]}{note and f', {note}'}")

@@ -58,6 +58,9 @@ class ViewName(click.ParamType):
 
 
 preset_argument = click.argument("preset")
+with_option = click.option(
+    "--with", "others", metavar="PRESET", multiple=True, help="One more material, to compare with; may be repeated."
+)
 scene_option = click.option("--scene", metavar="PRESET", help="A preset under PRESET, for what PRESET does not hold.")
 output_option = click.option("-o", "--output", required=True, metavar="FILE", help="The file to write.")
 seconds_option = click.option("--time", "seconds", type=Number(0, 1e6), help="Most seconds to sample.")

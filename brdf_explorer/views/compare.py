@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..glsl import assemble
+from ..lib.colormap import diverging
 from ..lib.srgb import luminance
 from ..measure import error
 from ..measure.laws import Shader
@@ -24,10 +25,18 @@ from .table import progressive
 PARTS = ("sphere", "difference", "lobes", "curves")
 THROUGH = 0.55  # opacity of the lobe of B, through which A is seen
 LEAST = 1e-12  # of the reference's mean: a difference below it has no colours
+NOTHING = 1e-6  # of the reference's mean: a difference below it is none
 ESTIMATES = 64  # of a stochastic f, whose noise its numbers hold
 REDRAWN = 0.1  # seconds between drawings while the parts get better
-GAP, HEAD = 14, 24  # points between the parts, and above each for its title
-NUMBERS, WORDS = 5, 218  # lines of numbers below all, and points that one is wide
+GAP, HEAD, BESIDE = 14, 24, 40  # points between the parts, above each for its title, and beside one for its axis
+NUMBERS, WORDS, FOOT = (
+    5,
+    190,
+    0.2,
+)  # lines of numbers below all, points that one is wide, and share of the height for them
+SMALL = 70  # points of a part's side below which spheres and curves alone are shown
+APART = 20  # times one lobe's peak the other's, from which on each is drawn over its own
+DEPTH = 1000  # times lower than the lower curve's peak a logarithmic axis goes at least
 
 
 @dataclass(frozen=True)
@@ -41,7 +50,7 @@ class Compare(Drawn):
     other: int = param(2, 1, 99, "number of B in the list of materials; the next after A if that is A, or not there")
     swipe: float = param(0.5, 0.0, 1.0, "place of the line: left of it the sphere is A, right of it B")
     axis: str = choice("log", ("log", "linear"), "scale of f in the slices; a logarithmic one shows the tails")
-    decades: int = param(5, 1, 12, "decades that a logarithmic axis shows")
+    decades: int = param(5, 1, 12, "decades that a logarithmic axis shows, or more if one curve is lower")
 
     def against(self, state):
         """The number of B in the list of materials, from 0, or None where there is only one."""
@@ -52,10 +61,15 @@ class Compare(Drawn):
 
     def boxes(self, size, scale=1.0):
         """Box of each part by name, and columns and rows of the numbers below them."""
+        width, height = np.divide(size, scale)
+        columns = max(int((width - 12) // WORDS), 1)
+        rows = min(-(-NUMBERS // columns), int(FOOT * height / 16))
         parts = PARTS if self.show == "all" else (self.show,)
-        columns = max(int((size[0] / scale - 12) // WORDS), 1)
-        rows = -(-NUMBERS // columns)
-        return dict(zip(parts, layout(size, scale, len(parts), 16 + 16 * rows), strict=True)), columns, rows
+        found = layout(size, scale, len(parts), 16 + 16 * rows)
+        if len(parts) > 2 and min(found[0][2] - found[0][0], found[0][3] - found[0][1]) < SMALL * scale:
+            parts = ("sphere", "curves")
+            found = layout(size, scale, len(parts), 16 + 16 * rows)
+        return dict(zip(parts, found, strict=True)), columns, rows
 
     def shows(self, state):
         return (self, state.materials, state.active, state.directions, state.light, state.look, state.views["sphere"])
@@ -106,12 +120,12 @@ class Compare(Drawn):
                 targets = [g.target("sphere", (side, side)) for g in sides_of(gpu)]  # without what lies behind
                 pixels = [gpu.pixels(target) for target in targets]
                 self.difference(draw, gpu, boxes["difference"], targets, pixels)
-                words = words + difference_of_pictures(*pixels) * all(p.done for p in known["sphere"])
+                words = words + difference_of_pictures(*pixels)
         if "lobes" in found:
             self.lobes(draw, boxes["lobes"], states, found["lobes"])
         if "curves" in known:
             self.curves(draw, boxes["curves"], states, [[t.plane() for t in tables] for tables, _ in known["curves"]])
-        for i, text in enumerate(words):
+        for i, text in enumerate(words[: columns * rows]):
             at = (12 + i % columns * WORDS, 6 + 16 * (rows - i // columns))
             draw.text(text, np.multiply(at, scale) - [0, 8 * scale], "muted", (0.0, 0.5), 11.5)
         return draw
@@ -133,13 +147,15 @@ class Compare(Drawn):
             draw.text(words, (edge, top + 12 * s), color_of(state, draw.colors), (anchor, 0.5), 12.5)
 
     def lobes(self, draw, box, states, lobes):
-        """Both lobes to one scale."""
+        """Both lobes, over each other."""
         left, bottom, right, top = box
-        target, labels = lobes
+        target, labels, apart = lobes
         height = target.size[1]
         draw.raster((left, bottom), target)
-        quantity = QUANTITIES[states[0].views["lobe"].quantity]
-        draw.text(quantity, (left, top + 12 * draw.scale), "ink", (0.0, 0.5), 12.5)
+        quantity = QUANTITIES[states[0].views["lobe"].quantity] + ", each over its own peak" * apart
+        draw.text(
+            cut(quantity, (right - left) / draw.scale, 12.5), (left, top + 12 * draw.scale), "ink", (0.0, 0.5), 12.5
+        )
         for label in labels:
             at = (round(left) + label.x, round(bottom) + height - label.y)
             draw.text(label.text, at, label.color, label.anchor, label.size)
@@ -152,10 +168,12 @@ class Compare(Drawn):
             (state, theta, luminance(f)) for state, parts in zip(states, slices, strict=True) for theta, _, f in parts
         ]
         high = 1.3 * max(float(v.max()) for _, _, v in lines) or 1.0
-        low = high / 10**self.decades if self.axis == "log" else 0.0
+        lower = min(v.max() for v in (np.concatenate([v for s, _, v in lines if s is state]) for state in states))
+        low = min(high / 10**self.decades, lower / DEPTH if lower > 0 else np.inf) if self.axis == "log" else 0.0
         frame = (left + 44 * s, bottom + 36 * s, max(right - 8 * s, left + 52 * s), max(top - 4 * s, bottom + 40 * s))
         lowest = -270.0 if max(map(len, slices)) > 1 else -90.0
-        axes = Axes(draw, frame, Axis(lowest, 90.0, "θi in the plane of incidence"), Axis(low, high, "", self.axis))
+        title = "θi in the plane of incidence" if frame[2] - frame[0] > 170 * s else "θi"
+        axes = Axes(draw, frame, Axis(lowest, 90.0, title), Axis(low, high, "", self.axis))
         angles = np.arange(lowest, 91, 30 if lowest == -90 else 45)
         axes.frame(angles, [f"{min(abs(a), 360 - abs(a)):g}°" for a in angles])
         draw.text("f  [1/sr]", (left, top + 12 * s), "ink", (0.0, 0.5), 12.5)
@@ -166,12 +184,31 @@ class Compare(Drawn):
     def difference(self, draw, gpu, box, targets, pixels):
         """B less A, its luminance over A's mean."""
         s = draw.scale
-        left, _, right, top = box
+        left, bottom, right, top = box
         largest = difference_map(gpu, draw, "compare difference", box, targets, pixels)
-        percent = f"±{number(100 * largest, 2)} %" if largest is not None else "A is black"
-        wide = (right - left) / s > 260
-        words = f"B less A (red: B is brighter), {percent} of A's mean" if wide else f"B less A, {percent}"
-        draw.text(words, (left, top + 12 * s), "ink", (0.0, 0.5), 12.5)
+        if largest is None or largest <= NOTHING:
+            words = "B less A: " + ("no difference" if largest is not None else "A is black")
+        else:
+            words = f"B less A, ±{number(100 * largest, 2)} % of A's mean"
+            edge = (left + right + targets[0].size[0]) / 2 + 8 * s
+            if right - edge > 52 * s:
+                bar = edge, (bottom + top) / 2 - 60 * s, edge + 10 * s, (bottom + top) / 2 + 60 * s
+                self.bar(draw, bar, 100 * largest)
+        draw.text(cut(words, (right - left) / s, 12.5), (left, top + 12 * s), "ink", (0.0, 0.5), 12.5)
+
+    def bar(self, draw, box, percent):
+        """The colours of the differences, and what the first and the last stand for."""
+        left, bottom, right, top = box
+        edges = np.round(np.linspace(bottom, top, 42))
+        for low, high, x in zip(edges[:-1], edges[1:], np.linspace(-1, 1, 41), strict=True):
+            red, green, blue = np.round(255 * diverging(x)).astype(int)
+            draw.fill((left, low, right, high), f"#{red:02x}{green:02x}{blue:02x}")
+        for y, words in (
+            (top, f"+{number(percent, 2)} %"),
+            ((bottom + top) / 2, "0"),
+            (bottom, f"-{number(percent, 2)} %"),
+        ):
+            draw.text(words, (right + 5 * draw.scale, y), "muted", (0.0, 0.5), 11.0)
 
 
 def difference_map(gpu, draw, name, box, targets, pixels):
@@ -201,7 +238,9 @@ def side_of(boxes):
 
 
 def both_lobes(gpu, states, box, scale):
-    """Yield a framebuffer as large as the box with both lobes to one scale, A seen through B, and its Labels: better ones."""
+    """Yield a framebuffer as large as the box with both lobes, A seen through B, its Labels, and whether each is drawn over its
+    own peak: better and better ones.
+    """
     colors = PALETTES[states[0].look.theme]
     left, bottom, right, top = box
     size = (max(int(right - left), 8), max(int(top - bottom), 8))
@@ -211,12 +250,17 @@ def both_lobes(gpu, states, box, scale):
     last = [next(run) for run in runs]
     while True:
         found, finals = zip(*last, strict=True)
-        peak = max(lobe.peak(t) for parts in found for t in parts) or 1.0
+        peaks = [max(map(lobe.peak, parts)) for parts in found]
+        apart = 0 < min(peaks) * APART < max(peaks)
+        if not apart:
+            peaks = [max(peaks)] * 2
         camera = Camera(lobe, size, scale, bar=0, both=max(map(len, found)) > 1)
         below, above, labels = stage(camera, found[0][0].wo, colors)
         surfaces = [
-            lobe.surfaces(g.beside(f"lobe {i}"), t, camera, 1 / peak, "plain", {"ink": rgb(color_of(state, colors))})
-            for g, state, parts in zip(sides_of(gpu), states, found, strict=True)
+            lobe.surfaces(
+                g.beside(f"lobe {i}"), t, camera, 1 / (peak or 1.0), "plain", {"ink": rgb(color_of(state, colors))}
+            )
+            for g, state, parts, peak in zip(sides_of(gpu), states, found, peaks, strict=True)
             for i, t in enumerate(parts)
         ]
         shares = [share for share, parts in zip((1.0, THROUGH), found, strict=True) for _ in parts]
@@ -232,7 +276,7 @@ def both_lobes(gpu, states, box, scale):
                             over = gpu.program(assemble("views/over.frag"))
                             gpu.draw(over, target, {"share": share}, picture, blend="premultiplied")
                     draw_lines(gpu, target, lines)
-            yield target, labels
+            yield target, labels, apart
             if not all(finals):
                 break
         if all(finals):
@@ -249,7 +293,8 @@ def layout(size, scale, count, foot):
     """Boxes of the parts, (left, bottom, right, top) in pixels, over `foot` points: in the columns that make them largest."""
 
     def side(columns):
-        return min(size[0] / columns, (size[1] - foot * scale) / -(-count // columns) - HEAD * scale)
+        down = (size[1] - foot * scale) / -(-count // columns) - HEAD * scale
+        return min(size[0] / columns - BESIDE * scale, down)
 
     columns = max(range(1, count + 1), key=side)
     rows = -(-count // columns)
@@ -266,22 +311,42 @@ def layout(size, scale, count, foot):
 def differences_of_values(gpu, a, b):
     """Yield lines that say how far the shader's f of the model b is from that of a, better and better where they are estimates.
 
-    Estimates of both draw the same numbers, so that they differ by what they do and not by chance.
+    Of estimates there are two independent halves, in each of which both draw the same numbers.
     """
     alpha, index = np.minimum(a.slopes(), b.slopes()), a.index() or b.index()
-    most, rays = (ESTIMATES, error.RAYS // 2) if a.stochastic or b.stochastic else (1, error.RAYS)
-    sums, lines = [0, 0], []
-    for n in range(1, most + 1):
+    noisy = a.stochastic or b.stochastic
+    halves, lines = [[0, 0], [0, 0]], []
+    for n in range(ESTIMATES if noisy else 1):
+        half = halves[n % 2]
         for i, model in enumerate((a, b)):
+            rays = error.RAYS // 2 if noisy else error.RAYS
             once = error.values(Shader(gpu, model), alpha, rays, index=index, seed=2 * n, estimates=1)
-            sums[i] = sums[i] + once.f
+            half[i] = half[i] + once.f
             yield lines
-        reference, found = (replace(once, f=total / n) for total in sums)
-        lines = [
-            f"{m.title}: {number(m.function(found, reference), 2)}"
-            for m in (error.METRICS[name] for name in ("rmse", "maximum", "energy"))
-        ]
+        if noisy and n % 2 == 0:
+            continue
+        share = 2 / (n + 1) if noisy else 1.0
+        pairs = [[replace(once, f=total * share) for total in half] for half in halves[: 1 + noisy]]
+        lines = of_estimates(pairs, n + 1) if noisy else of_values(*pairs[0])
     yield lines
+
+
+def of_values(reference, found):
+    return [
+        f"{m.title}: {number(m.function(found, reference), 2)}"
+        for m in (error.METRICS[name] for name in ("rmse", "maximum", "energy"))
+    ]
+
+
+def of_estimates(pairs, walks):
+    """As of_values, of halves of estimates; of the largest relative error they tell nothing."""
+    means = [replace(one, f=(one.f + other.f) / 2) for one, other in zip(*pairs, strict=True)]
+    rmse, energy = error.METRICS["rmse"], error.METRICS["energy"]
+    return [
+        f"{rmse.title}: {number(error.rmse_of_halves(*pairs), 2)}",
+        f"{energy.title}: {number(energy.function(*means), 2)}",
+        f"f by {walks} walks a direction",
+    ]
 
 
 def difference_of_pictures(a, b):
