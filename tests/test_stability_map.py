@@ -304,7 +304,8 @@ def test_every_cell_of_the_picture_is_a_link(gpu):
 
 def test_cells_come_coarse_first_and_are_kept(gpu):
     maps = list(stability(gpu, MODELS["diffuse"](), efforts=((32, 0), (64, 1))))
-    assert maps[-1].progress == 1 and all(a.progress < b.progress for a, b in zip(maps, maps[1:], strict=False))
+    assert maps[-1].progress == 1
+    assert all(a is b or a.progress < b.progress for a, b in zip(maps, maps[1:], strict=False))
     again = list(stability(gpu, MODELS["diffuse"](albedo=0.1), efforts=((32, 0), (64, 1))))
     assert again[-1].cells == maps[-1].cells  # parameters do not matter: it is about all of them
 

@@ -176,6 +176,12 @@ def closer(rng, batch, parents=12, children=24):
 
 def examine(gpu, subject, regime, count=512, rounds=3, seed=1):
     """{form: Cell} of a function in a regime: `count` points, then `rounds` of points closer to the worst of each form."""
+    (*_, found) = examination(gpu, subject, regime, count, rounds, seed)
+    return found
+
+
+def examination(gpu, subject, regime, count, rounds, seed=1):
+    """Yield None after each short step, and at last what `examine` gives."""
     rng = np.random.default_rng([seed, *map(ord, subject.label + regime.name)])
     u = rng.random((count, len(subject.arguments), 4))
     batches = {form: [] for form in subject.forms}
@@ -183,9 +189,14 @@ def examine(gpu, subject, regime, count=512, rounds=3, seed=1):
         arguments = subject.draw(regime, u)
         for form in subject.forms:
             batches[form].append(evaluated(gpu, subject, regime, u, form, arguments))
+            yield None
         if step < rounds:
             u = np.concatenate([closer(rng, joined(batches[form])) for form in subject.forms])
-    return {form: cell(gpu, subject, regime, form, joined(batches[form])) for form in subject.forms}
+    found = {}
+    for form in subject.forms:
+        found[form] = cell(gpu, subject, regime, form, joined(batches[form]))
+        yield None
+    yield found
 
 
 def cell(gpu, subject, regime, form, batch):
@@ -326,13 +337,15 @@ class Map:
 
 EFFORTS = ((192, 0), (512, 3))
 """Points and rounds of search of each pass: coarse cells first."""
-PAUSE = 0.05
+PAUSE = 0.2
 """Seconds between two Maps."""
 _kept = {}
 
 
 def stability(gpu, model, efforts=EFFORTS, everything=False):
-    """Yield the Maps of a material's functions as they grow, in passes of growing effort; of its choices, not its parameters.
+    """Yield the Map of a material's functions as it grows, in passes of growing effort; of its choices, not its parameters.
+
+    After each short step; the same Map again where there was no time for another one.
 
     everything: the functions of all options of its choices too, with the other choices as they are. Cells are kept by the text
     of their shaders.
@@ -346,13 +359,16 @@ def stability(gpu, model, efforts=EFFORTS, everything=False):
         if regime.concerns(subject)
     ]
     labels, cells = tuple(s.label for s in rows), {}
-    last = time.perf_counter()
+    last, latest = time.perf_counter(), Map(labels, {}, 0.0)
     for n, (subject, regime, count, rounds) in enumerate(todo, 1):
         key = (gpu.device, subject.texts, subject.label, regime.name, count, rounds)
         if key not in _kept:
-            _kept[key] = examine(gpu, subject, regime, count, rounds)
+            for made in examination(gpu, subject, regime, count, rounds):
+                yield latest
+            _kept[key] = made
         for form, found in _kept[key].items():
             cells[subject.label, regime.name, form] = found
         if n == len(todo) or time.perf_counter() - last > PAUSE:
-            yield Map(labels, dict(cells), n / len(todo))
+            latest = Map(labels, dict(cells), n / len(todo))
+            yield latest
             last = time.perf_counter()

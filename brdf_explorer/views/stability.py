@@ -73,9 +73,11 @@ class Stability(Drawn):
         return (self, type(state.model), state.model.choices(), state.look.theme)
 
     def drawings(self, gpu, state, size, scale=1.0):
+        shown = None
         for found in stability(gpu, state.model, everything=self.rows == "all"):
-            draw, note = self.drawing(found, state, size, scale)
-            done = found.progress == 1
+            if found is not shown:
+                draw, note = self.drawing(found, state, size, scale)
+            shown, done = found, found.progress == 1
             yield draw, note if done else f"{100 * found.progress:.0f} % measured; {note}", done
 
     def drawing(self, found, state, size, scale):
