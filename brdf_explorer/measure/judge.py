@@ -37,6 +37,7 @@ class Shots:
         self.gpu = gpu.apart()
         next(state.views["sphere"].pictures(self.gpu, state, (8, 8)))  # all share its environment from here on
         self.runs, self.taken = {}, {}
+        self.doing = ""  # which pass of how many, in words
 
     def of(self, state, side, replica=0, passes=None):
         """The picture (side, side, 4) after `passes`, or after all that the state takes, as a generator's result."""
@@ -51,7 +52,10 @@ class Shots:
             while count < passes and (better := next(pictures, None)):
                 count, picture = count + 1, better
                 self.runs[key] = (count, pictures, picture)
+                self.doing = f", pass {count} of {passes}"
+                self.gpu.ctx.finish()  # else passes pile up, and reading them takes as long as all
                 yield
+            self.doing = ""
             pixels = self.gpu.pixels(picture.target)[:, side * replica : side * (replica + 1)]
             self.taken[key, passes] = pixels.astype(float)
         return self.taken[key, passes]
@@ -136,6 +140,12 @@ class Judge:
         first = yield from self.shots.of(state, SIDE, 0)
         second = yield from self.shots.of(state, SIDE, 1)
         return over_disc((first - second)[..., :3] ** 2 / 2, first)
+
+    def own(self):
+        """The error of the reference itself, which is its noise, an Estimate."""
+        if not (self.split and noisy(self.reference)):
+            return NONE
+        return root((yield from self.variance(self.reference)))
 
     def fine(self, combination):
         """The larger of two: bias from many places in float64 with the noise of pictures, and both from pictures."""
