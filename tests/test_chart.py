@@ -302,6 +302,9 @@ def test_labels_are_inside_and_apart(gpu, options, size, scale, theme):
     state = replace(GOLD.with_view("chart", **options), look=Look(theme=theme))
     picture = last(state.views["chart"].pictures(gpu, state, size, scale))
     boxes = list(boxes_of(picture, scale))
+    asked = " ".join(words for *_, words in boxes)
+    if size == (1200, 900):
+        assert all(k.question in asked for k in state.views["chart"].ladders(state))
     for box in boxes:
         assert box[0] >= 0 and box[1] >= 0 and box[2] <= size[0] and box[3] <= size[1], box
     for a, b in combinations(boxes, 2):

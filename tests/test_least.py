@@ -536,8 +536,30 @@ def test_bad_input_of_the_command_is_one_line(run, arguments, words):
     assert [path.name for path in Path(".").iterdir()] == ["noisy.toml"]
 
 
-def test_a_ball_with_light_inside_is_refused(gpu):
-    with pytest.raises(
-        Invalid, match=r"Glass: light inside a ball is not compared here; `chart` compares f of its methods"
-    ):
+def test_a_ball_with_light_inside_is_refused_and_the_chart_is_named(gpu):
+    words = r"Glass: light inside a ball is not compared here; .*`chart masking --preset PRESET`.* f of its methods"
+    with pytest.raises(Invalid, match=words):
         result(least(gpu, load("glass", load("studio"))))
+
+
+def test_a_tolerance_below_the_noise_of_the_reference_is_refused_before_the_search(gpu, monkeypatch):
+    """And the line names the smallest one that has an answer."""
+    state, ladders = load("gold", load("white_furnace")), OF_F | {"environment": SAMPLES}
+    prices = generous(questions(state, ladders=ladders)[0])
+    with monkeypatch.context() as without:
+        without.setattr(module, "search", None)  # is not called
+        with pytest.raises(Invalid, match=r"within 0.001: the reference itself is known to .* only; allow") as refused:
+            result(least(gpu, state, 0.001, ladders=ladders, prices=prices))
+    smallest = float(str(refused.value).split()[-1])
+    answer = result(least(gpu, state, smallest, ladders=ladders, prices=prices))
+    assert 0.9 * smallest < answer.error.high <= smallest
+
+
+def test_error_where_nothing_is_dropped_is_told_as_noise_of_the_reference(gpu):
+    state = load("gold", load("white_furnace")).with_view("sphere", samples=16)
+    asked, _ = questions(state, ladders=OF_F)
+    answer = result(least(gpu, state, 0.0625, ladders=OF_F, prices=generous(asked)))
+    told = advice.sentences(answer)
+    assert told[0] == "1 of 2 ladders comes down from its reference." and told[1].startswith("Relative RMSE")
+    answer = replace(answer, steps=tuple(replace(s, chosen=s.reference) for s in answer.steps))
+    assert advice.sentences(answer)[1].startswith("Noise of the reference itself: ")

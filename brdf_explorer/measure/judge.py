@@ -20,7 +20,7 @@ SIDE = 64
 SPARE = 0.7
 """What is surely noise of the reference's f counts by this share for a combination's whose own was not measured."""
 EARLY = 64
-"""Passes of pictures that reject where f is an estimate."""
+"""Passes of pictures that reject where f is an estimate, and that a look at the reference's noise begins with."""
 PASSES = 64
 """Passes of pictures that metrics other than "picture" compare."""
 LONGEST = 65536
@@ -37,6 +37,7 @@ class Shots:
         self.gpu = gpu.apart()
         next(state.views["sphere"].pictures(self.gpu, state, (8, 8)))  # all share its environment from here on
         self.runs, self.taken = {}, {}
+        self.doing = ""  # which pass of how many, in words
 
     def of(self, state, side, replica=0, passes=None):
         """The picture (side, side, 4) after `passes`, or after all that the state takes, as a generator's result."""
@@ -51,7 +52,10 @@ class Shots:
             while count < passes and (better := next(pictures, None)):
                 count, picture = count + 1, better
                 self.runs[key] = (count, pictures, picture)
+                self.doing = f", pass {count} of {passes}"
+                self.gpu.ctx.finish()  # else passes pile up, and reading them takes as long as all
                 yield
+            self.doing = ""
             pixels = self.gpu.pixels(picture.target)[:, side * replica : side * (replica + 1)]
             self.taken[key, passes] = pixels.astype(float)
         return self.taken[key, passes]
@@ -131,11 +135,22 @@ class Judge:
         """Whether f of a state or of the reference is an estimate: its noise is then unlike that of others."""
         return state.model.stochastic or self.reference.model.stochastic
 
-    def variance(self, state):
+    def variance(self, state, passes=None):
         """The variance of a state's picture over the mean's square, an Estimate: half the square of what two differ by."""
-        first = yield from self.shots.of(state, SIDE, 0)
-        second = yield from self.shots.of(state, SIDE, 1)
+        first = yield from self.shots.of(state, SIDE, 0, passes)
+        second = yield from self.shots.of(state, SIDE, 1, passes)
         return over_disc((first - second)[..., :3] ** 2 / 2, first)
+
+    def own(self):
+        """The error of the reference itself, which is its noise, an Estimate: what few passes let expect if that is within the
+        tolerance, as more may take long and the search will tell, else from all passes."""
+        if not (self.split and noisy(self.reference)):
+            return NONE
+        most = self.reference.views["sphere"].samples
+        few = min(EARLY, most)
+        early = yield from self.variance(self.reference, few)
+        expected = root(Estimate(*(v * few / most for v in early)))
+        return expected if expected.high <= self.tolerance else root((yield from self.variance(self.reference)))
 
     def fine(self, combination):
         """The larger of two: bias from many places in float64 with the noise of pictures, and both from pictures."""

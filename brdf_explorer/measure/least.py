@@ -184,9 +184,9 @@ def least(gpu, state, tolerance=0.01, metric="picture", ladders=LADDERS, prices=
     the tolerance.
     """
     if state.model.index() is not None:
-        raise Invalid(
-            f"{state.material.name}: light inside a ball is not compared here; `chart` compares f of its methods"
-        )
+        ways = " and ".join(f"`chart {k.name} --preset PRESET`" for k in ladders.values() if compares_f(k, state))
+        way = f"; {ways} compare{'s' * (' and ' not in ways)} f of its methods" if ways else ""
+        raise Invalid(f"{state.material.name}: light inside a ball is not compared here{way}")
     asked, untried = questions(state, metric, ladders)
     if all(len(q.methods) < 2 for q in asked):
         raise Invalid(f"{state.material.name}: nothing to reduce: each question that it raises has one method only")
@@ -198,16 +198,16 @@ def least(gpu, state, tolerance=0.01, metric="picture", ladders=LADDERS, prices=
         chosen, answer = judge.answers[key]
         return replace(answer, reference=settled(judge.reference), reduced=settled(at(state, asked, chosen)))
     yield from saying(judge.check(), lambda: "the reference")
+    own = yield from saying(judge.own(), lambda: f"how well the reference is known{judge.shots.doing}")
+    if own.high > tolerance:
+        raise Invalid(unanswerable(tolerance, own))
     if prices is None:
         prices, measured = yield from timed(judge.shots.gpu, state, asked)
     ordered = yield from saying(in_order(asked, prices, state), lambda: "combinations by cost")
     looking = search(ordered, judge.rough, judge.fine, tolerance)
-    found = yield from saying(looking, lambda: f"{len(judge.seen)} of {len(ordered)} combinations")
+    found = yield from saying(looking, lambda: f"{len(judge.seen)} of {len(ordered)} combinations{judge.shots.doing}")
     if found is None:
-        own = judge.seen[judge.top]
-        raise Invalid(
-            f"no combination is surely within {tolerance:g}: the reference itself is known to {own.high:.2g} only; allow more"
-        )
+        raise Invalid(unanswerable(tolerance, judge.seen[judge.top]))
     chosen, error = found
     reduced = settled(at(state, asked, chosen))
     described = []
@@ -239,6 +239,19 @@ def least(gpu, state, tolerance=0.01, metric="picture", ladders=LADDERS, prices=
     if measured is not None:
         judge.answers[key] = chosen, answer
     return answer
+
+
+def compares_f(ladder, state):
+    """Whether a ladder's methods differ in f, and the question arises for a state."""
+    return ladder.measures == "f" and ladder.applies(state)
+
+
+def unanswerable(tolerance, own):
+    """Why there is no answer, and the smallest tolerance that has one, from the reference's own error, an Estimate."""
+    digit = 10.0 ** (np.floor(np.log10(own.high)) - 1)
+    least = np.ceil(own.high / digit) * digit
+    known = f"the reference itself is known to {own.high:.2g} only"
+    return f"no combination is surely within {tolerance:g}: {known}; allow {least:.2g}"
 
 
 def saying(steps, words):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..measure.advice import EXACT, HEADS, amount, factor, rows, sentences, tone
+from ..measure.advice import EXACT, HEADS, amount, factor, of_what, rows, sentences, tone
 from ..measure.error import METRICS
 from ..measure.least import least
 from ..measure.questions import at, questions, settled
@@ -195,10 +195,9 @@ class Page:
         self.head(draw, box, words)
         covered = pixels[0][..., 3] > 0
         mean, other = (float(p[covered][:, :3].mean()) for p in pixels)
-        metric = METRICS[self.view.metric].title
         tips = [
             "Reduced less reference, of the reference's mean; red where it is brighter",
-            f"{metric}: {amount(answer.error.value, answer.metric)}",
+            f"{of_what(answer)}: {amount(answer.error.value, answer.metric)}",
             f"on average: {tone(other / mean - 1) or 'as bright'}" if mean > 0 else "the reference is black",
         ]
         draw.link(box, "\n".join(tips))
