@@ -364,8 +364,9 @@ def stability(gpu, model, efforts=EFFORTS, everything=False):
         key = (gpu.device, subject.texts, subject.label, regime.name, count, rounds)
         if key not in _kept:
             for made in examination(gpu, subject, regime, count, rounds):
+                if made:
+                    _kept[key] = made
                 yield latest
-            _kept[key] = made
         for form, found in _kept[key].items():
             cells[subject.label, regime.name, form] = found
         if n == len(todo) or time.perf_counter() - last > PAUSE:

@@ -238,7 +238,7 @@ def tip(cell, state):
     if cell.over or cell.under:
         lines.append(f"{100 * cell.over:.2g} % too large for the format, {100 * cell.under:.2g} % too small")
     lines += described(cell)
-    lines += shown_at(state, cell)[1] or ["click: to this point, with these formulas on the sphere"]
+    lines += held(state, cell)[2] or ["click: to this point, with these formulas on the sphere"]
     return "\n".join(lines)
 
 
@@ -257,8 +257,10 @@ def described(cell):
     return [f"at {'; '.join(parts)}:", f"float32 {single}", f"float64 {exact}"]
 
 
-def shown_at(state, cell):
-    """The state with a cell's point in it, its formulas on the sphere; and in words what of it lies beyond what can be shown."""
+def held(state, cell):
+    """Of a cell's point what a state can hold: parameters by name, theta_o, phi_o and the light's theta in degrees, None where
+    the point has no directions; and in words what lies beyond.
+    """
     at, beyond = cell.at.arguments, []
 
     def within(name, value, declaration):
@@ -274,19 +276,25 @@ def shown_at(state, cell):
     params = declared(state.model, Param)
     values = {name: within(name, at[name], p) for name, p in params.items() if name in at}
     values = {n: v if isinstance(v, tuple) or params[n].size == 1 else (v,) * params[n].size for n, v in values.items()}
-    state = state.with_model(replace(state.model, **cell.choices, **values))
-    state = state.with_view("sphere", formulas=cell.form)
     wo, wi = directions_of(at)
     if wo is None:
-        return state, beyond
+        return values, None, beyond
     theta, phi = (float(np.degrees(a)) for a in angles(wo))
-    limits = declared(state.directions)
-    viewer = replace(state.directions, theta_o=within("theta_o", theta, limits["theta_o"]), phi_o=phi)
     between = float(np.degrees(2 * np.arctan2(np.linalg.norm(wo - wi), np.linalg.norm(wo + wi))))
-    light = replace(
-        state.light, theta=between, irradiance=state.light.irradiance or declared(state.light)["irradiance"].default
-    )
-    return replace(state, directions=viewer, light=light), beyond
+    return values, (within("theta_o", theta, declared(state.directions)["theta_o"]), phi, between), beyond
+
+
+def shown_at(state, cell):
+    """The state with a cell's point in it, its formulas on the sphere; and in words what of it lies beyond what can be shown."""
+    values, directions, beyond = held(state, cell)
+    state = state.with_model(replace(state.model, **cell.choices, **values))
+    state = state.with_view("sphere", formulas=cell.form)
+    if directions is None:
+        return state, beyond
+    theta, phi, between = directions
+    viewer = replace(state.directions, theta_o=theta, phi_o=phi)
+    irradiance = state.light.irradiance or declared(state.light)["irradiance"].default
+    return replace(state, directions=viewer, light=replace(state.light, theta=between, irradiance=irradiance)), beyond
 
 
 def leading(cell, cls):
