@@ -138,7 +138,7 @@ def words(gpu, state, size=(600, 500), scale=1.0):
 def test_what_the_picture_says(gpu):
     state = State().with_model(MICROFACET(alpha=1e-3))
     picture = last(state.views["hemisphere"].pictures(gpu, state, (600, 500)))
-    assert picture.note.startswith("peak ") and "θ 40°" in picture.note and picture.note.endswith("∫ pdf dω = 0.999999")
+    assert picture.note.startswith("peak ") and "θ 40°" in picture.note and picture.note.endswith("∫ pdf dω = 1.00000")
     assert "over ωi, the directions to the light" in words(gpu, state)
     assert any("across" in w for w in words(gpu, state)) and {"ωo", "ωr", "30°", "60°", "90°", "x"} <= set(
         words(gpu, state)

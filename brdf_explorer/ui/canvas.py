@@ -8,11 +8,11 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from ..model import Invalid
 from ..views.develop import develop
+from ..views.pace import STEP
 from . import gestures, widgets
 from .theme import SMALL, colors, fonts, points, u32, vec
 
 BUDGET = 0.008  # seconds a frame that a picture may get better in
-PACE = 0.012  # seconds that one of its steps may take: three panels and the window itself then answer within 50 ms
 END = object()
 
 
@@ -36,7 +36,7 @@ class Canvas:
         fresh = key != self.key
         if fresh:
             self.key, self.error = key, ""
-            self.pictures = view.pictures(gpu.paced(PACE), state, size, scale)
+            self.pictures = view.pictures(gpu.paced(STEP), state, size, scale)
         start = time.perf_counter()
         stepped = False
         while self.pictures is not None and time.perf_counter() - start < BUDGET:

@@ -1,7 +1,7 @@
 """Two materials A and B: their spheres with a line between them, their lobes and slices over each other, and the difference."""
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from ..glsl import assemble
 from ..lib.colormap import diverging
 from ..lib.srgb import luminance
 from ..measure import error
-from ..measure.laws import Shader
+from ..measure.laws import Shader, viewers
 from ..model import Invalid, choice, param
 from .axes import Axes, Axis
 from .develop import develop
@@ -315,14 +315,18 @@ def differences_of_values(gpu, a, b):
     """
     alpha, index = np.minimum(a.slopes(), b.slopes()), a.index() or b.index()
     noisy = a.stochastic or b.stochastic
-    halves, lines = [[0, 0], [0, 0]], []
+    halves, lines, rays = [[0, 0], [0, 0]], [], error.RAYS // 2 if noisy else error.RAYS
     for n in range(ESTIMATES if noisy else 1):
         half = halves[n % 2]
         for i, model in enumerate((a, b)):
-            rays = error.RAYS // 2 if noisy else error.RAYS
-            once = error.values(Shader(gpu, model), alpha, rays, index=index, seed=2 * n, estimates=1)
+            parts = []
+            for wo in viewers()[:, None]:  # one in each step
+                parts.append(error.values(Shader(gpu, model), alpha, rays, wo, index, seed=2 * n, estimates=1))
+                yield lines
+            once = error.Values(
+                *(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(error.Values))
+            )
             half[i] = half[i] + once.f
-            yield lines
         if noisy and n % 2 == 0:
             continue
         share = 2 / (n + 1) if noisy else 1.0

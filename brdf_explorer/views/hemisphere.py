@@ -187,7 +187,7 @@ class Hemisphere(Drawn):
         values = self.values(model if self.over == "wm" else quick or model, wo, w * turn)
         best, reach = around(values, w)
         steps = np.stack(np.meshgrid(*[np.linspace(-1, 1, 5)] * 2), axis=-1).reshape(-1, 2)
-        for step in 0.1 * max(reach, 1e-6) * 0.6 ** np.arange(30):
+        for step in 0.1 * max(reach, 1e-6) * 0.4 ** np.arange(14):
             tries = best + step * steps
             tries /= np.maximum(np.linalg.norm(tries, axis=-1, keepdims=True) / EDGE, 1.0)
             best = tries[self.values(model, wo, of_disc(tries) * turn).argmax()]
@@ -200,17 +200,19 @@ class Hemisphere(Drawn):
         best, reach = around(values, w)
         return Peak(float(values.max()), of_disc(best), reach)
 
-    def mass(self, model, wo):
-        """The integral that QUANTITIES names, by quadrature."""
+    def mass(self, model, wo, evaluator=None):
+        """The integral that QUANTITIES names, by quadrature of a model, or over directions to the light of its Shader."""
         if self.quantity == "D":
             return projected_area(model, (0.0, 0.0, 1.0))
         if self.quantity == "D_visible":
             return projected_area(model, wo) / float(slot("ndf", model.ndf).visible_area(wo, np.array(model.alpha)))
 
+        evaluator = evaluator or model
+
         def function(wo, wi):
-            return (model.pdf(wo, wi) if self.quantity == "pdf" else luminance(model.f(wo, wi)) * np.abs(wi[..., 2]))[
-                ..., None
-            ]
+            if self.quantity == "pdf":
+                return evaluator.pdf(wo, wi)[..., None]
+            return luminance(evaluator.f(wo, wi))[..., None] * np.abs(wi[..., 2:])
 
         return float(integral(function, wo, model.slopes(), tolerance=1e-6, most=256, index=model.index()).value[0])
 
@@ -237,7 +239,7 @@ class Hemisphere(Drawn):
         places = self.places(peaks, size, scale)
         maps = {name: one for place in places for name, one in self.maps(gpu, state, wo, place, peaks, scale).items()}
         runs = {name: one.passes(WALKS if tables else 1) for name, one in maps.items()}
-        runs["integral"] = self.integrals(model, wo, peaks, tables)
+        runs["integral"] = self.integrals(gpu, model, wo, tables)
         drawn, since = None, 0.0
         for found, done in in_turn(gpu, runs):
             if not maps.keys() <= found.keys():
@@ -266,7 +268,7 @@ class Hemisphere(Drawn):
             found[up] = self.peak(model, wo, up, Shader(gpu, model))
             yield found
 
-    def integrals(self, model, wo, peaks, tables):
+    def integrals(self, gpu, model, wo, tables):
         """Yield the integral that QUANTITIES names, as words, and largest values by hemisphere where they get better."""
         for found, _ in tables or ():
             parts = [luminance(t.albedo) / t.side.dense for t in found]
@@ -275,7 +277,7 @@ class Hemisphere(Drawn):
             words = f"{sum(parts):.4f} ± {number(error, 1)}"
             yield words, {t.side.up: self.peak_of(t).value for t in found}
         if not tables:
-            yield f"{self.mass(model, wo):.6f}", {}
+            yield f"{self.mass(model, wo, Shader(gpu, model)):.5f}", {}
 
     def places(self, peaks, size, scale):
         """The Places of the hemispheres in a picture of that size."""

@@ -5,6 +5,7 @@ from collections import deque
 
 import numpy as np
 
+STEP = 0.012  # seconds of a step in the window: three panels and the window itself then answer within 50 ms
 MOST = 16  # pixels along a side that one of the preview stands for, at most
 
 
