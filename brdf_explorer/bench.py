@@ -18,10 +18,15 @@ from .measure.estimator import Runs, moments, samplers, slope
 from .measure.grid import direction
 from .measure.tradeoff import tradeoffs, works
 from .models import MODELS
-from .state import Material, State, load
+from .state import State, load
+from .views.pace import STEP
 
 SIZE = (1024, 1024)
 SMALL = (256, 256)
+PROGRESSIVE = (
+    "sphere lobe polar factors facets hemisphere sampling compare readings microsurface".split()
+)  # views whose pictures get better
+SLOW = ("gold", "etched_glass", "white_plaster", "sandpaper")  # a mirror, and the slowest of each kind of model
 WINDOW = (676, 210)  # the size at which the best known peer's lobe was timed
 BARE = "import numpy, imgui_bundle, moderngl; moderngl.create_context(standalone=True, require=330{backend})"
 PICTURE = """
@@ -81,6 +86,7 @@ def report(repeats=31, processes=5):
         yield from charting(gpu)
         yield from drawing(gpu, repeats)
         yield from walking(gpu, repeats)
+        yield from answering(gpu)
     yield from sampling(State().model)
     yield from sampling(MODELS["multiscatter"](alpha=0.5, fresnel="one"), mean=1.0, groups=4)
     yield from starting(processes)
@@ -159,19 +165,49 @@ def drawing(gpu, repeats):
 
 
 def walking(gpu, repeats, size=(512, 512)):
-    """Costs of walks over the microsurface against what they cannot do without, and of the first pictures made of them."""
+    """Costs of walks over the microsurface against what they cannot do without."""
     yield from map(partial(walk, gpu, repeats, size), ("ggx", "beckmann"))
-    state = State((Material("Walk", MODELS["multiscatter"](alpha=0.5, fresnel="one")),))
 
-    def first(name):
-        def run():
-            next(state.views[name].pictures(gpu, state, size))
-            gpu.ctx.finish()
 
-        return run
+def answering(gpu, size=(512, 512), repeats=5, seconds=0.5):
+    """Of each view at the window's pace: the time to its first picture and its longest step, each by its slowest material.
 
-    for name, times in interleaved({name: first(name) for name in ("sphere", "lobe", "polar")}, repeats).items():
-        yield figure(f"first picture of walks, {name} 512x512", times * 1e3, "ms", limit=100)
+    Each repeat has other parameters, so that nothing that was measured before is shown again; shaders are compiled before.
+    """
+    for view in PROGRESSIVE:
+        firsts, steps = {}, {}
+        for name in SLOW:
+            state = load(name, load("studio"))
+            state = replace(state, materials=(*state.materials, *load("gold").materials))
+            if view == "hemisphere":
+                state = state.with_view(view, quantity="f")
+            runs = [paced(gpu, moved(state, k), view, size, seconds) for k in range(repeats + 1)]
+            firsts[name], steps[name] = ([run[i] for run in runs[1:]] for i in (0, 1))
+        for what, found, limit in (("first picture", firsts, 100), ("longest step", steps, 50)):
+            slowest = max(found, key=lambda name: np.median(found[name]))
+            samples = np.array(found[slowest]) * 1e3
+            yield figure(f"{what} of {view}, {size[0]}x{size[1]}; the slowest: {slowest}", samples, "ms", limit=limit)
+
+
+def moved(state, k):
+    """The state with other parameters, so little that it costs as much."""
+    model = state.model
+    return state.with_model(replace(model, alpha=tuple(a * (1 - 1e-3 * k) for a in model.alpha)))
+
+
+def paced(gpu, state, view, size, seconds):
+    """Seconds to the first picture of a view in the window, and of its longest step before `seconds` are over."""
+    begun, first, longest = time.perf_counter(), None, 0.0
+    pictures = state.views[view].pictures(gpu.paced(STEP), state, size)
+    while first is None or time.perf_counter() - begun < seconds:
+        start = time.perf_counter()
+        picture = next(pictures)
+        gpu.ctx.finish()
+        end = time.perf_counter()
+        longest, first = max(longest, end - start), first or picture and end - begun
+        if picture and picture.done:
+            break
+    return first, longest
 
 
 def walk(gpu, repeats, size, ndf):

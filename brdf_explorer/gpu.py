@@ -113,16 +113,28 @@ class Gpu:
         self.buffers = {}
         self.arrays = {}
         self.sides = {}
+        self.pace = (
+            None  # seconds that a step of a picture may take where a view divides them; None: a step is a whole drawing
+        )
+        self.speeds = {}  # program -> seconds a pixel, measured by views/pace.py
         self.drawn = set()  # (program, size, format) of draws, for measure/cost.py, which empties it before some work
         self.costs = {}  # measured there
-        self.errors = {}  # of measure/tradeoff.py and measure/least.py
+        self.errors = {}  # of measure/tradeoff.py
+        self.evidence = {}  # of measure/judge.py
 
     def beside(self, name):
         """Another Gpu of this context, kept under a name: its targets are its own, programs and buffers are shared."""
         if name not in self.sides:
             self.sides[name] = side = Gpu(self.ctx)
             side.programs, side.buffers, side.arrays = self.programs, self.buffers, self.arrays
+            side.speeds = self.speeds
         return self.sides[name]
+
+    def paced(self, seconds):
+        """This Gpu, with steps of `seconds` at most where a view divides a drawing into steps."""
+        other = copy(self)
+        other.pace = seconds
+        return other
 
     @property
     def device(self):
@@ -132,7 +144,7 @@ class Gpu:
     def apart(self):
         """This Gpu with targets of its own: what is drawn with it meets no other picture of the same name."""
         other = copy(self)
-        other.targets = {}
+        other.targets, other.pace = {}, None
         return other
 
     def program(self, fragment, vertex=None):

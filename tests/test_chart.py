@@ -9,11 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from PIL import ImageFont
 
 from brdf_explorer.cli import main
 from brdf_explorer.environment import environment, turn
-from brdf_explorer.export import embedded
+from brdf_explorer.export import embedded, font
 from brdf_explorer.ladder import ESTIMATORS, LADDERS, Ladder, Method
 from brdf_explorer.lib.common import normalize, quotient, split
 from brdf_explorer.lib.environment import environment_lookup, sample_environment
@@ -291,7 +290,7 @@ def test_first_points_come_before_the_last(gpu):
 
 def boxes_of(picture, scale):
     for label in picture.labels:
-        left, top, right, bottom = ImageFont.load_default(label.size * scale).getbbox(label.text)
+        left, top, right, bottom = font(label.size * scale).getbbox(label.text)
         x, y = label.x - label.anchor[0] * (right - left), label.y - label.anchor[1] * (bottom - top)
         yield x, y, x + right - left, y + bottom - top, label.text
 
@@ -303,6 +302,9 @@ def test_labels_are_inside_and_apart(gpu, options, size, scale, theme):
     state = replace(GOLD.with_view("chart", **options), look=Look(theme=theme))
     picture = last(state.views["chart"].pictures(gpu, state, size, scale))
     boxes = list(boxes_of(picture, scale))
+    asked = " ".join(words for *_, words in boxes)
+    if size == (1200, 900):
+        assert all(k.question in asked for k in state.views["chart"].ladders(state))
     for box in boxes:
         assert box[0] >= 0 and box[1] >= 0 and box[2] <= size[0] and box[3] <= size[1], box
     for a, b in combinations(boxes, 2):
@@ -341,8 +343,8 @@ def test_every_mark_is_a_link_to_its_method(gpu):
     later, elsewhere = state.with_view("lobe", radius="log"), state.with_model(DIFFUSE())
     for method in LADDERS["fresnel"].methods:
         mine = [k for k in links if k.tip.startswith(method.name)]
-        assert mine and all(k.state(later) == LADDERS["fresnel"].at(later, method) for k in mine)
-        assert all(k.state(elsewhere) == elsewhere for k in mine)
+        assert mine and all(k.change(later) == LADDERS["fresnel"].at(later, method) for k in mine)
+        assert all(k.change(elsewhere) == elsewhere for k in mine)
         assert all(("outside its domain: k is not 0" in k.tip) == (method.name == "dielectric") for k in mine)
         assert all("ns an evaluation, " in k.tip and "quartiles" in k.tip and "±" in k.tip for k in mine)
 
@@ -352,7 +354,7 @@ def test_marks_that_no_state_holds_say_so(gpu):
     links = last(state.views["chart"].pictures(gpu, state, (800, 600))).links
     for method in LADDERS["precision"].methods:
         for k in (k for k in links if k.tip.startswith(method.name)):
-            assert (k.state is None) == (method.name != "float32") == ("only measured" in k.tip)
+            assert (k.change is None) == (method.name != "float32") == ("only measured" in k.tip)
 
 
 def test_marks_outside_their_domain_are_hollow(gpu):

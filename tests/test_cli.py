@@ -17,7 +17,8 @@ from PIL import Image
 
 from brdf_explorer import __version__
 from brdf_explorer.bench import Figure
-from brdf_explorer.cli import Flag, after, flags_of, main, number, split
+from brdf_explorer.cli import main
+from brdf_explorer.cli.flags import Flag, after, flags_of, number, split
 from brdf_explorer.measure import albedo
 from brdf_explorer.measure.grid import direction
 from brdf_explorer.model import Choice, Param, Text, declared

@@ -13,7 +13,7 @@ from brdf_explorer.measure.grid import direction
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Directions, Look, State
 from brdf_explorer.views.diagram import radius
-from brdf_explorer.views.hemisphere import NARROW, QUANTITIES, Hemisphere, disc, of_disc
+from brdf_explorer.views.hemisphere import NARROW, QUANTITIES, Hemisphere, Map, disc, of_disc
 from brdf_explorer.views.picture import PALETTES, rgb
 
 MICROFACET, DIFFUSE = MODELS["microfacet"], MODELS["diffuse"]
@@ -37,6 +37,13 @@ def test_disc_keeps_areas():
     np.testing.assert_allclose(np.linalg.norm(np.cross(*edges), axis=-1), 2.0, rtol=1e-6)
 
 
+def map_of(view, gpu, state, wo, up, peak, side, middle, pixel):
+    """Colours (side, side, 3) of a map."""
+    shown = Map(view, gpu, state, wo, up, peak, "test", (side, side), middle, pixel)
+    deque(shown.passes(1), 0)
+    return gpu.pixels(shown.painted(view, peak.value, PALETTES["light"]["paper"]))[..., :3] / 255.0
+
+
 @pytest.mark.parametrize("scale", ["linear", "log"])
 @pytest.mark.parametrize("quantity", QUANTITIES)
 @np.errstate(under="ignore")
@@ -48,8 +55,7 @@ def test_map_shows_the_models_values(gpu, quantity, scale):
         for up in view.hemispheres(model):
             peak = view.peak(model, WO, up)
             pixel = 2 / side
-            shown = view.map(gpu, state, WO, up, peak, peak.value, "test", (side, side), (0.0, 0.0), pixel)
-            pixels = gpu.pixels(shown)[::-1, :, :3] / 255.0
+            pixels = map_of(view, gpu, state, WO, up, peak, side, (0.0, 0.0), pixel)[::-1]
             y, x = np.mgrid[:side, :side]
             p = (np.stack([x, y], axis=-1) + 0.5 - side / 2) * pixel
             r = np.linalg.norm(p, axis=-1)
@@ -117,10 +123,10 @@ def test_sharp_lobes_do_not_vanish_between_pixels(gpu, quantity, alpha):
         wo = direction(np.radians(theta_o), 0.4)
         peak = view.peak(state.model, wo)
         assert peak.reach < NARROW
-        shown = (gpu, state, wo, 1.0, peak, peak.value, "test", (100, 100))
-        whole = gpu.pixels(view.map(*shown, (0.0, 0.0), 0.02))[..., :3] / 255.0
+        shown = (view, gpu, state, wo, 1.0, peak, 100)
+        whole = map_of(*shown, (0.0, 0.0), 0.02)
         assert 1 <= np.all(np.abs(whole - viridis(1.0)) < 0.02, axis=-1).sum() <= 4
-        near = gpu.pixels(view.map(*shown, disc(peak.w), 2 * peak.reach / 100))[..., :3] / 255.0
+        near = map_of(*shown, disc(peak.w), 2 * peak.reach / 100)
         bright = np.mean(np.linalg.norm(near - viridis(0.0), axis=-1) > 0.5)
         assert 0.02 < bright < 0.6
 
@@ -132,7 +138,7 @@ def words(gpu, state, size=(600, 500), scale=1.0):
 def test_what_the_picture_says(gpu):
     state = State().with_model(MICROFACET(alpha=1e-3))
     picture = last(state.views["hemisphere"].pictures(gpu, state, (600, 500)))
-    assert picture.note.startswith("peak ") and "θ 40°" in picture.note and picture.note.endswith("∫ pdf dω = 0.999999")
+    assert picture.note.startswith("peak ") and "θ 40°" in picture.note and picture.note.endswith("∫ pdf dω = 1.00000")
     assert "over ωi, the directions to the light" in words(gpu, state)
     assert any("across" in w for w in words(gpu, state)) and {"ωo", "ωr", "30°", "60°", "90°", "x"} <= set(
         words(gpu, state)

@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_views import check_labels
+from test_views import check_labels, check_links
 
 from brdf_explorer.cli import main
 from brdf_explorer.environment import environment, toward, turn
@@ -21,9 +21,12 @@ from brdf_explorer.lib.environment import environment_lookup, sample_environment
 from brdf_explorer.lib.random import STREAM_BSDF, STREAM_LIGHT, random2
 from brdf_explorer.measure import advice
 from brdf_explorer.measure import bias as bias_of
+from brdf_explorer.measure import judge as judging
 from brdf_explorer.measure import least as module
 from brdf_explorer.measure.bias import Estimate
-from brdf_explorer.measure.least import Prices, at, in_order, least, passes, questions, result, search
+from brdf_explorer.measure.judge import FINE, SIDE, Judge
+from brdf_explorer.measure.least import Prices, in_order, least, passes, result, search
+from brdf_explorer.measure.questions import at, questions
 from brdf_explorer.model import Invalid
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Light, Material, State, load, loads, save
@@ -97,7 +100,7 @@ def test_answer_is_that_of_an_exhaustive_search(gpu, material, scene, tolerance)
     asked, _ = questions(state, ladders=ladders)
     prices = generous(asked)
     answer = result(least(gpu, state, tolerance, ladders=ladders, prices=prices))
-    judge = module.Judge(gpu, state, asked, "picture", tolerance)
+    judge = Judge(gpu, state, asked, "picture", tolerance)
     ordered = result(in_order(asked, prices, state))
     enough = [c for c in ordered if result(judge.fine(c)).high <= tolerance]
     cheapest = min(enough, key=lambda c: prices.frame(asked, c, at(state, asked, c)))
@@ -240,7 +243,7 @@ def test_bounds_of_the_bias_hold_and_are_close(seed):
     )
     truth = error_under_one_light(SimpleNamespace(reference=reference, reduced=none), 768, 256) ** 2
     for places in range(10):
-        found, _ = result(bias_of.Bias(reference, module.FINE, places).of(none.model))
+        found, _ = result(bias_of.Bias(reference, FINE, places).of(none.model))
         assert found.low <= truth <= found.high
         assert np.sqrt(found.high) < 1.6 * np.sqrt(truth)
 
@@ -298,7 +301,7 @@ def test_scene_matters(gpu, material, ladder, tolerance, cheapest, error):
         asked, _ = questions(state, ladders=ladders)
         answer = result(least(gpu, state, tolerance, ladders=ladders, prices=generous(asked)))
         answers[scene] = answer.steps[0].chosen.name
-        bias, _ = result(bias_of.Bias(answer.reference, module.FINE, 2).of(at(state, asked, (0,)).model))
+        bias, _ = result(bias_of.Bias(answer.reference, FINE, 2).of(at(state, asked, (0,)).model))
         assert scene == "one_light" or bias.low < error**2 < bias.high
     assert answers["one_light"] == cheapest != answers["white_furnace"]
 
@@ -338,7 +341,7 @@ def test_methods_that_change_the_model(gpu, start, tolerance):
     prices, ordered = generous(asked), result(in_order(asked, generous(asked), state))
     reached = [at(state, asked, c).model for c in ordered]
     assert len(set(reached)) == len(reached) == 4 + 4  # the laws of diffuse, and of Fresnel's within its domain
-    judge = module.Judge(gpu, state, asked, "picture", tolerance)
+    judge = Judge(gpu, state, asked, "picture", tolerance)
     answer = result(least(gpu, state, tolerance, ladders=ladders, prices=prices))
     enough = next(c for c in ordered if result(judge.fine(c)).high <= tolerance)
     assert answer.reduced.model == at(state, asked, enough).model
@@ -363,7 +366,7 @@ def test_noise_of_the_reference_is_no_error_of_others(gpu, monkeypatch, loss, to
     """Against a reference of 60 % noise a pass, what is right is found right, and what lost a tenth of it to have done so."""
     monkeypatch.setitem(MODELS, "walk", Walk)
     rng = np.random.default_rng(1)
-    even = np.ones((module.SIDE, module.SIDE, 4))
+    even = np.ones((SIDE, SIDE, 4))
 
     class Pictures:
         """Even ones, of states that are no estimates after one pass."""
@@ -376,13 +379,13 @@ def test_noise_of_the_reference_is_no_error_of_others(gpu, monkeypatch, loss, to
             noise = 0.6 / np.sqrt(passes) * rng.standard_normal(even.shape) if state.model.stochastic else 0.0
             return plain(np.maximum(even * (1.0 if state.model.stochastic else 1 - loss) + noise, 0.0))
 
-    monkeypatch.setattr(module, "Shots", Pictures)
-    gpu.errors.pop("least", None)
+    monkeypatch.setattr(judging, "Shots", Pictures)
+    gpu.evidence.clear()
     state = load("gold", load("one_light")).with_view("sphere", samples=4096).with_model(Walk())
     prices = Prices(1.0, {("body", "walk"): 0.0, ("body", "closed"): -0.9}, passes)
     asked = least(gpu, state, tolerance, ladders={"body": WALK}, prices=prices)
     answer = result(asked)
-    gpu.errors.pop("least", None)
+    gpu.evidence.clear()
     assert answer.steps[0].chosen.name == (enough or "walk")
     if enough:
         assert answer.steps[0].change == pytest.approx(loss, abs=0.01)
@@ -408,8 +411,8 @@ def test_work_is_done_in_small_steps(gpu, monkeypatch):
     f = cls.f
     monkeypatch.setattr(cls, "f", lambda model, wo, wi: counts.append(wi.size // 3) or f(model, wo, wi))
     state = load("gold", load("studio"))
-    gpu.errors.pop("least", None)
-    bias = bias_of.Bias(state, module.FINE, 1)
+    gpu.evidence.clear()
+    bias = bias_of.Bias(state, FINE, 1)
     steps = bias.of(replace(state.model, shadowing="none"))
     done = 0
     while next(steps, ...) is None:
@@ -428,7 +431,7 @@ def quick(gpu, monkeypatch):
     monkeypatch.setattr(module, "TIMED", (32, 32))
     monkeypatch.setattr(module.cost, "LEAST", 3)
     monkeypatch.setattr(module.cost, "MOST", 3)
-    gpu.errors.pop("least", None)
+    gpu.evidence.clear()
     gpu.costs.clear()
 
 
@@ -450,16 +453,17 @@ def test_view_shows_progress_and_then_the_answer(gpu, quick):
 def test_pictures_load_their_states_and_nothing_is_measured_again(gpu, quick, monkeypatch):
     state = load("chalk", load("one_light")).with_view("least", tolerance=1.0)
     answer = result(state.views["least"].answer(gpu, state))
-    links = [link for link in drawn(gpu, state)[-1].links if link.state]
-    models = [link.state(state).model for link in links]
+    links = [link for link in drawn(gpu, state)[-1].links if link.change]
+    check_links(links, state)
+    models = [link.change(state).model for link in links]
     assert models == [answer.reference.model, answer.reduced.model]
     turned = replace(state, directions=replace(state.directions, theta_o=10.0))
-    assert links[0].state(turned).directions == turned.directions
+    assert links[0].change(turned).directions == turned.directions
     monkeypatch.setattr(module, "timed", None)  # is not called any more
     for link in links:
-        pictures = drawn(gpu, link.state(turned))
+        pictures = drawn(gpu, link.change(turned))
         assert not any("Looking" in label.text for picture in pictures for label in picture.labels)
-        assert [k.state(state).model for k in pictures[-1].links if k.state] == models
+        assert [k.change(state).model for k in pictures[-1].links if k.change] == models
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
@@ -532,8 +536,30 @@ def test_bad_input_of_the_command_is_one_line(run, arguments, words):
     assert [path.name for path in Path(".").iterdir()] == ["noisy.toml"]
 
 
-def test_a_ball_with_light_inside_is_refused(gpu):
-    with pytest.raises(
-        Invalid, match=r"Glass: light inside a ball is not compared here; `chart` compares f of its methods"
-    ):
+def test_a_ball_with_light_inside_is_refused_and_the_chart_is_named(gpu):
+    words = r"Glass: light inside a ball is not compared here; .*`chart masking --preset PRESET`.* f of its methods"
+    with pytest.raises(Invalid, match=words):
         result(least(gpu, load("glass", load("studio"))))
+
+
+def test_a_tolerance_below_the_noise_of_the_reference_is_refused_before_the_search(gpu, monkeypatch):
+    """And the line names the smallest one that has an answer."""
+    state, ladders = load("gold", load("white_furnace")), OF_F | {"environment": SAMPLES}
+    prices = generous(questions(state, ladders=ladders)[0])
+    with monkeypatch.context() as without:
+        without.setattr(module, "search", None)  # is not called
+        with pytest.raises(Invalid, match=r"within 0.001: the reference itself is known to .* only; allow") as refused:
+            result(least(gpu, state, 0.001, ladders=ladders, prices=prices))
+    smallest = float(str(refused.value).split()[-1])
+    answer = result(least(gpu, state, smallest, ladders=ladders, prices=prices))
+    assert 0.9 * smallest < answer.error.high <= smallest
+
+
+def test_error_where_nothing_is_dropped_is_told_as_noise_of_the_reference(gpu):
+    state = load("gold", load("white_furnace")).with_view("sphere", samples=16)
+    asked, _ = questions(state, ladders=OF_F)
+    answer = result(least(gpu, state, 0.0625, ladders=OF_F, prices=generous(asked)))
+    told = advice.sentences(answer)
+    assert told[0] == "1 of 2 ladders comes down from its reference." and told[1].startswith("Relative RMSE")
+    answer = replace(answer, steps=tuple(replace(s, chosen=s.reference) for s in answer.steps))
+    assert advice.sentences(answer)[1].startswith("Noise of the reference itself: ")

@@ -8,7 +8,7 @@ from oracles.cases import CASES, corners, material
 from scipy.integrate import dblquad
 from scipy.special import erfc
 from test_half_space import walked
-from test_views import check_labels
+from test_views import check_labels, check_links
 
 from brdf_explorer.export import save_view
 from brdf_explorer.lib.spheres import sphere_s
@@ -250,12 +250,14 @@ def test_words_have_room(gpu, name, size):
 def test_names_lead_to_the_other_readings_and_the_last_link_to_the_sphere(gpu):
     state = load("gold").with_view("readings", reading="correlated")
     *names, sphere = page(gpu, state).links
-    assert {link.state.views["readings"].reading for link in names} == set(WORDS) - {"correlated"}
-    assert sphere.state.model.shadowing == "full" and sphere.state.views["sphere"].formulas == "textbook"
+    assert {link.change(state).views["readings"].reading for link in names} == set(WORDS) - {"correlated"}
+    check_links([*names, sphere], state)
+    shown = sphere.change(state)
+    assert shown.model.shadowing == "full" and shown.views["sphere"].formulas == "textbook"
     assert not [
         link
         for link in page(gpu, state.with_view("readings", reading="slope")).links
-        if link.state.model != state.model
+        if link.change(state).model != state.model
     ]
 
 

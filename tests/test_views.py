@@ -6,7 +6,6 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from PIL import ImageFont
 
 from brdf_explorer.export import font
 from brdf_explorer.glsl import Source
@@ -18,6 +17,7 @@ from brdf_explorer.models import MODELS
 from brdf_explorer.state import Directions, Light, Look, Material, State, load
 from brdf_explorer.ui.gestures import linked, swipe
 from brdf_explorer.views import VIEWS
+from brdf_explorer.views.compare import ESTIMATES, both_lobes, differences_of_values
 from brdf_explorer.views.develop import develop
 from brdf_explorer.views.drawing import Drawing
 from brdf_explorer.views.picture import PALETTES, Picture, rgb
@@ -150,11 +150,28 @@ def test_develop_is_exact_srgb_over_the_backdrop_and_shows_nan(gpu):
     np.testing.assert_allclose(out[1, 3, :3], 255 * half, atol=1.1)
 
 
+def check_links(links, state):
+    """Every click keeps what was changed since its picture was drawn and what it is not about."""
+    later = replace(
+        state,
+        materials=(*state.materials[: state.active], replace(state.material, name="Mine"), load("chalk").material),
+        light=replace(state.light, rotation=77.0, phi=-33.0),
+        look=replace(state.look, exposure=1.25),
+        directions=replace(state.directions, phi_o=12.0),
+    ).with_view("lobe", zoom=2.0)
+    clicks = [link.change for link in links if link.change]
+    assert clicks
+    for change in clicks:
+        after = change(later)
+        assert (after.look, after.materials[1:], after.material.name) == (later.look, later.materials[1:], "Mine")
+        assert (after.light.rotation, after.light.phi) == (77.0, -33.0) and after.views["lobe"] == later.views["lobe"]
+
+
 def check_labels(picture, size, scale):
     """Every label is inside of the picture, and no two overlap."""
     boxes = []
     for label in picture.labels:
-        left, top, right, bottom = ImageFont.load_default(label.size * scale).getbbox(label.text)
+        left, top, right, bottom = font(label.size * scale).getbbox(label.text)
         x, y = label.x - label.anchor[0] * (right - left), label.y - label.anchor[1] * (bottom - top)
         boxes.append((x, y, x + right - left, y + bottom - top, label.text))
     for box in boxes:
@@ -204,13 +221,13 @@ def test_a_drawing_draws_fills_lines_and_pictures_in_order(gpu):
     drawing.raster((20, 20), inner)
     drawing.stroke([(0, 25), (100, 25)], "#00ff00", 4.0)
     drawing.text("words", (50, 55), "muted")
-    drawing.link((10, 10, 60, 50), "tip", State())
+    drawing.link((10, 10, 60, 50), "tip", State)
     picture = drawing.picture(gpu, "test")
     pixels = gpu.pixels(picture.target)[..., :3]
     assert pixels[59 - 45, 15].tolist() == [255, 0, 0] and pixels[59 - 28, 30].tolist() == [0, 0, 255]
     assert pixels[59 - 25, 15].tolist() == [0, 255, 0] and pixels[59 - 55, 80].tolist() == [255, 255, 255]
     assert (picture.labels[0].x, picture.labels[0].y) == (50, 5)
-    assert linked(picture.links, (30, 20)).state == State() and linked(picture.links, (30, 5)) is None
+    assert linked(picture.links, (30, 20)).change is State and linked(picture.links, (30, 5)) is None
 
 
 @pytest.mark.parametrize("name", ["gold", "ceramic", "glass", "frosted_glass", "brushed_aluminium"])
@@ -292,6 +309,37 @@ def test_compare_has_room_for_its_words(gpu, size):
         assert box[0] >= 0 and box[1] >= 0 and box[2] <= size[0] and box[3] <= size[1], box
     for a, b in combinations(boxes, 2):
         assert a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] + 2 or b[3] <= a[1] + 2, (a, b)
+
+
+def test_compare_of_walks_goes_on_and_tells_no_noise_of_a_copy(gpu):
+    """Of a walk and its like by other parameters of no effect the halves' products are 0; of others they are the difference."""
+    walk = MODELS["multiscatter"](alpha=0.5, fresnel="one")
+    near, far = MODELS["microfacet"](alpha=0.5, fresnel="one"), replace(walk, orders=1)
+    (*_, one) = differences_of_values(gpu, walk, near)
+    (*_, other) = differences_of_values(gpu, far, near)
+    lost, none = (float(lines[0].split(": ")[1]) for lines in (one, other))
+    assert none < 0.02 < 0.05 < lost  # order 1 is the microfacet model; the others add some percent
+    assert one[-1] == f"f by {ESTIMATES} walks a direction" and not any("relative error of f" in line for line in one)
+
+
+@pytest.mark.parametrize("alpha, apart", [(0.3, False), (0.01, True)])
+def test_lobes_of_unlike_peaks_are_each_over_its_own(gpu, alpha, apart):
+    """Then both are seen: the colours of A and of B cover many pixels."""
+    state = two(a=MICROFACET(alpha=0.3, fresnel="one"), b=MICROFACET(alpha=alpha, fresnel="one"))
+    (*_, (target, _, found)) = both_lobes(gpu, (state, replace(state, active=1)), (0, 0, 300, 300), 1.0)
+    assert found == apart
+    pixels = gpu.pixels(target)[..., :3].astype(int)
+    for b, color in enumerate(PALETTES["light"]["curves"][: 2 * apart]):
+        near = np.linalg.norm(pixels / 255.0 - rgb(color), axis=-1) < 0.35
+        assert near.sum() > 30, b
+
+
+@pytest.mark.parametrize("size, parts", [((900, 640), 4), ((400, 300), 4), ((282, 215), 2)])
+def test_compare_shows_as_many_parts_as_have_room(size, parts):
+    boxes, columns, rows = GREY.views["compare"].boxes(size)
+    assert len(boxes) == parts
+    assert columns * rows >= 2
+    assert all(min(right - left, top - bottom) >= 70 for left, bottom, right, top in boxes.values())
 
 
 def test_a_drag_moves_the_line(gpu):

@@ -73,10 +73,11 @@ def rows(answer):
 
 def sentences(answer):
     """The answer in words, a list of sentences."""
-    metric, error = METRICS[answer.metric], answer.error
+    error = answer.error
     dropped = [s for s in answer.steps if s.dropped]
     if dropped:
-        found = [f"{len(dropped)} of {len(answer.steps)} ladders come down from their reference."]
+        come = "comes down from its" if len(dropped) == 1 else "come down from their"
+        found = [f"{len(dropped)} of {len(answer.steps)} ladders {come} reference."]
     else:
         found = ["Nothing can be dropped: no combination that is measurably cheaper stays within the tolerance."]
     tolerance = f"the tolerance is {amount(answer.tolerance, answer.metric)}"
@@ -84,7 +85,7 @@ def sentences(answer):
         found.append(f"The picture is that of the reference; {tolerance}.")
     else:
         value, most = (amount(v, answer.metric) for v in (error.value, error.high))
-        found.append(f"{metric.title[0].upper()}{metric.title[1:]}: {value}, surely below {most}; {tolerance}.")
+        found.append(f"{capital(of_what(answer))}: {value}, surely below {most}; {tolerance}.")
     for step in dropped:
         cheaper = f", {gain(step.saving)}" if step.saving else ""
         found.append(f"{step.chosen.name} instead of {step.reference.name}: {effect(step, answer.metric)}{cheaper}.")
@@ -99,6 +100,15 @@ def sentences(answer):
     if out:
         found.append(f"Not tried: {', '.join(out)}.")
     return found
+
+
+def of_what(answer):
+    """What the answer's error is, in words: noise alone where nothing was dropped."""
+    return METRICS[answer.metric].title if any(s.dropped for s in answer.steps) else "noise of the reference itself"
+
+
+def capital(words):
+    return f"{words[0].upper()}{words[1:]}"
 
 
 def untried(answer):

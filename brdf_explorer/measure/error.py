@@ -105,6 +105,17 @@ def rmse(found, reference):
     return float(np.sqrt(np.mean(quotient(square, whole))))
 
 
+def rmse_of_halves(one, other):
+    """As `rmse`, of two independent halves of estimates, each (reference, found): squares are products of differences of both
+    halves, to which noise adds nothing in the mean.
+    """
+    with np.errstate(under="ignore"):
+        weight = (one[0].weight * one[0].cosine ** 2)[..., None]
+        square = np.sum((one[1].f - one[0].f) * (other[1].f - other[0].f) * weight, axis=(1, 2, 3))
+        whole = np.sum(one[0].f * other[0].f * weight, axis=(1, 2, 3))
+    return float(np.sqrt(max(np.mean(quotient(square, whole)), 0.0)))
+
+
 def largest(found, reference):
     """The largest relative error of f where the reference's f cos is at least MATTERS of its largest for that viewer."""
     with np.errstate(under="ignore"):

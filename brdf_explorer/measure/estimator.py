@@ -24,7 +24,7 @@ FIRST = 16
 FITTED = 64
 """Samples from which on a slope is fitted: the mean square of few samples with rare large ones is too low in most runs."""
 BATCH = 4096
-"""Samples that are drawn in one step, which takes some milliseconds."""
+"""Samples that are drawn in one step, which takes some milliseconds; a quarter of them by walks."""
 KEPT = 2**15
 """Directions and weights of a sampler that are kept for its histograms."""
 ROTATIONS = 16
@@ -140,24 +140,25 @@ def _by_quadrature(models, wo, most):
 def _among_light(models, wo, light, most):
     lobe = replace(models[0], sampling="visible") if "sampling" in models[0].choices() else models[0]
     pixel = np.stack([np.arange(ROTATIONS), np.zeros(ROTATIONS)], axis=-1)[:, None].astype(np.uint32)
-    total, done, shown = 0.0, 0, 128
+    total, done, shown = 0.0, 0, 16
     while done < most:
-        index = np.arange(done, done + 64, dtype=np.uint32)[None]
-        for wi in (lobe.sample_f(wo, random2(pixel, index, 1))[0], light.sample(random2(pixel, index, 2))):
+        count = min(max(done, 16), 32)
+        index = np.arange(done, done + count, dtype=np.uint32)[None]
+        for stream, draw in ((1, lambda u: lobe.sample_f(wo, u)[0]), (2, light.sample)):
+            yield None
+            wi = draw(random2(pixel, index, stream))
             up = (np.abs(wi[..., 2]) if lobe.transmits else wi[..., 2]) > HORIZON
             wi = np.where(up[..., None], wi, [0.0, 0.0, 1.0])
             density = lobe.pdf(wo, wi) + light.pdf(wi)
             with np.errstate(under="ignore"):
                 found = quotient(_powers(models, wo, wi, light), density[..., None])
                 total = total + np.where(up[..., None], found, 0.0).sum(axis=1)
-        done += 64
+        done += count
         if done == shown:
             means = total / done
             value, error = means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(ROTATIONS)
             yield Moments(float(value[0]), float(error[0]), value[1:], error[1:])
             shown *= 2
-        else:
-            yield None
 
 
 class Runs:
@@ -180,7 +181,7 @@ class Runs:
         done = self.counts[-1] if self.counts else 0
         goal = 2 * done or FIRST
         while done < goal:
-            n = min(goal - done, BATCH // RUNS)
+            n = min(goal - done, (BATCH // 4 if self.model.stochastic else BATCH) // RUNS)
             wi, weight = self.model.sample_f(self.wo, self.random.random((RUNS, n, 2)))
             weight = luminance(weight)
             self.sums += (weight * (self.light.radiance(wi) if self.light else 1.0)).sum(axis=1)

@@ -8,10 +8,12 @@ from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from ..model import Invalid
 from ..views.develop import develop
+from ..views.pace import STEP
 from . import gestures, widgets
 from .theme import SMALL, colors, fonts, points, u32, vec
 
 BUDGET = 0.008  # seconds a frame that a picture may get better in
+END = object()
 
 
 class Canvas:
@@ -34,19 +36,20 @@ class Canvas:
         fresh = key != self.key
         if fresh:
             self.key, self.error = key, ""
-            self.pictures = view.pictures(gpu, state, size, scale)
+            self.pictures = view.pictures(gpu.paced(STEP), state, size, scale)
         start = time.perf_counter()
         stepped = False
         while self.pictures is not None and time.perf_counter() - start < BUDGET:
             try:
-                picture = next(self.pictures, None)
+                picture = next(self.pictures, END)
             except Invalid as error:
                 self.error, self.pictures = str(error), None
                 break
-            if picture is not None:
-                self.picture, stepped = picture, True
-            if picture is None or picture.done:
+            if picture is END:
                 self.pictures = None
+            elif picture is not None:  # until then the one before stays
+                self.picture, stepped = picture, True
+                self.pictures = None if picture.done else self.pictures
             gpu.ctx.finish()
         if self.picture is None:
             return None
@@ -111,10 +114,10 @@ class Canvas:
         link = hovered and self.picture and gestures.linked(self.picture.links, at)
         if link and link.tip:
             widgets.hint(*link.tip.split("\n"))
-        if (hovered or imgui.is_item_active()) and (link and link.state or self.name in gestures.DRAGGED):
+        if (hovered or imgui.is_item_active()) and (link and link.change or self.name in gestures.DRAGGED):
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
-        if link and link.state and imgui.is_item_clicked():
-            return link.state(state) if callable(link.state) else link.state
+        if link and link.change and imgui.is_item_clicked():
+            return link.change(state)
         moved = imgui.is_item_activated() or any(delta)
         if imgui.is_item_active() and moved:
             if self.name == "sphere" and state.light.irradiance > 0:

@@ -443,6 +443,7 @@ class Window:
         """Draw all pictures anew, from the shaders as they are on disk now."""
         glsl.reload()
         self.gpu.errors.clear()  # of pictures that other shaders drew
+        self.gpu.evidence.clear()
         for canvas in self.canvases.values():
             canvas.restart()
 

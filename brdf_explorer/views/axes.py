@@ -6,8 +6,8 @@ import numpy as np
 
 from ..glsl import assemble
 from .diagram import apart, nice_step, number
+from .drawing import width_of
 
-LETTER = 5.8  # points that a letter of a tick takes, on average
 TICK = 11.0  # height of a tick's letters, points
 
 
@@ -68,7 +68,7 @@ class Axes:
         draw.stroke([(left, top), (left, bottom), (right, bottom)], "muted")
         words = [tick(x) for x in xs] if words is None else words
         places = self.place(xs, self.y.low)[:, 0] if len(xs) else []
-        for i in apart(places, [(LETTER * len(w) + 6) * s for w in words]):
+        for i in apart(places, [(width_of(w, TICK) + 6) * s for w in words]):
             draw.text(words[i], (places[i], bottom - 10 * s), "muted", size=TICK)
         for y in ys:
             draw.text(tick(y), (left - 6 * s, self.place(self.x.low, y)[1]), "muted", (1.0, 0.5), TICK)

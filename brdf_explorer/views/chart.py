@@ -12,10 +12,9 @@ from ..measure.tradeoff import effort, seconds, tradeoffs
 from ..model import choice, param
 from .axes import Axes, Axis
 from .diagram import number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, cut, width_of, wrapped
 
 NOTHING = "No question with several methods arises for this material in this light."
-LETTER = 0.56  # width of a letter over the height of its line, more than the average
 UNITS = {"evaluation": ("cost of an evaluation", "ns", 1e9), "sample": ("cost of a sample", "ns", 1e9)}
 UNITS |= {"frame": ("cost of a frame", "ms", 1e3)}
 SPAN = 12  # most decades of error that are shown
@@ -24,6 +23,9 @@ STRIP = 30  # height of the strip of exact methods, points
 SMALL = 10.5  # height of small print, points
 REDRAWN = 0.1  # seconds at least from one drawing to the next while measuring goes on
 SHARE = 4  # and at least this times what drawing took
+ASKED = 16  # points from one line of a question to the next
+TALL = 162  # points of a panel whose chart leaves no room for a second one, and without a chart
+LOW = 62
 NARROW = 300  # points that each of several charts side by side takes at least
 NEAR = 100  # points from a mark to its name, and more only if it would meet lines of the chart there
 FARTHEST = 400  # and at most
@@ -112,7 +114,13 @@ class Chart(Drawn):
         room = (right - left) / s - 24
         if room < 40 or top - bottom < 30 * s:
             return
-        draw.text(cut(found.ladder.question, room, 13.5), (left + 12 * s, top - 15 * s), "ink", (0.0, 0.5), 13.5)
+        asked = wrapped([found.ladder.question], room, 13.5)
+        height = (top - bottom) / s
+        if (len(asked) - 1) * ASKED > height - (TALL if height >= TALL else LOW):
+            asked = [cut(found.ladder.question, room, 13.5)]
+        for i, words in enumerate(asked):
+            draw.text(words, (left + 12 * s, top - (15 + ASKED * i) * s), "ink", (0.0, 0.5), 13.5)
+        top -= ASKED * (len(asked) - 1) * s
         if found.reason:
             for i, words in enumerate(wrapped([found.reason], room, 12.5)):
                 y = top - (44 + 18 * i) * s
@@ -129,7 +137,7 @@ class Chart(Drawn):
         if frame[2] - frame[0] < 60 * s or frame[3] - frame[1] < 50 * s:
             best = found.best(self.tolerance)
             told = f"green would be: {best.name}" if best else "none is within the tolerance"
-            if top - bottom > 62 * s and not found.doing:
+            if top - bottom > LOW * s and not found.doing:
                 words = cut(f"No room for the chart; {told}.", room, 11.0)
                 draw.text(words, (left + 12 * s, top - 51 * s), "muted", (0.0, 0.5), 11.0)
             return
@@ -300,7 +308,7 @@ def label(draw, blocked, words, places, color, size, mark=None):
     A line leads to a mark that is far, over other words if there is no other way; words hide the lines that they meet.
     """
     s = draw.scale
-    width, height = (LETTER * size * len(words) + 4) * s, 1.15 * size * s
+    width, height = (width_of(words, size) + 4) * s, 1.15 * size * s
     places = list(places)
     for of_lines, of_words in ((True, True), (False, True), (False, False)):
         for x, y, anchor in places:
@@ -323,24 +331,3 @@ def label(draw, blocked, words, places, color, size, mark=None):
             draw.text(words, (x, y), color, (anchor, 0.5), size)
             return box
     return None
-
-
-def cut(words, room, size):
-    """The words, or what of them has room on a line of `room` points."""
-    letters = max(int(room / (LETTER * size)), 1)
-    return words if len(words) <= letters else words[: letters - 1].rstrip(" ,;:") + "…"
-
-
-def wrapped(texts, room, size):
-    """Lines of `room` points of some texts, each of which begins a line of its own."""
-    lines = []
-    for text in texts:
-        line = ""
-        for word in text.split():
-            if line and LETTER * size * len(f"{line} {word}") > room:
-                lines.append(line)
-                line = word
-            else:
-                line = f"{line} {word}".strip()
-        lines.append(cut(line, room, size))
-    return lines

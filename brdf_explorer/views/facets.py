@@ -11,10 +11,9 @@ from ..lib.srgb import luminance
 from ..measure.grid import direction
 from ..measure.mirror_limit import SHARPNESS, differences, has_facets, mirrors, sharpened
 from ..model import choice, param
-from .axes import LETTER, Axes, Axis
-from .chart import wrapped
+from .axes import Axes, Axis
 from .diagram import number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, width_of, wrapped
 from .picture import Curves
 
 STEPS = (10.0, 100.0, 1e3, 1e4)
@@ -93,7 +92,7 @@ class Facets(Drawn):
         right = (middle if beside else width) - 18 * scale
         rows, row, x = [], 0, 0.0
         for text, color in legend:
-            wide = (LETTER * 11.5 / 11 * len(text) + 14) * scale
+            wide = (width_of(text, 11.5) + 14) * scale
             row, x = (row + 1, 0.0) if x > 0 and LEFT * scale + x + wide > right else (row, x)
             rows.append((text, color, x, row))
             x += wide

@@ -4,7 +4,9 @@ Of a material that transmits f and pdf are maps over both hemispheres, the lower
 1 for the hemisphere above and -1 for that below, and directions on a disc are as if above.
 """
 
+import time
 from dataclasses import dataclass
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
@@ -12,17 +14,18 @@ import numpy as np
 from ..glsl import assemble, of_model
 from ..lib import slot
 from ..lib.common import normalize, vec
-from ..lib.random import seeded
 from ..lib.srgb import luminance
-from ..measure.albedo import albedo_with_error, integral, quadrature
+from ..measure.albedo import integral, quadrature
 from ..measure.grid import angles, direction, flat_refraction, sides
+from ..measure.laws import Shader
 from ..measure.microsurface import D_visible, facets, projected_area
-from ..measure.noise import mean_f
 from ..model import choice, param
 from .axes import Axis, colorbar
 from .diagram import number
 from .drawing import Drawing, Drawn
+from .pace import Pace, chords, in_turn
 from .picture import rgb
+from .table import progressive
 
 QUANTITIES = {  # name -> title, and what its integral over the hemisphere is called
     "f": ("f(ωo, ωi)  [1/sr]", "∫ f cos θ dω"),
@@ -36,7 +39,10 @@ RAYS = 96  # about the mirror direction, and directions a ray, among which the p
 FAINT = 0.01  # share of the peak down to which the inset shows the lobe
 NARROW = 0.12  # half width of that, in radii of the disc, from which on the disc itself shows it
 HEAD, FOOT, RIM = 46, 26, 24  # points above the disc and below it for words, and around it
-WALKS = 16  # estimates of a stochastic f for a pixel
+WALKS = 64  # estimates of a stochastic f for a pixel
+PASSES = 48  # of the table that tells its integral and peak
+FEW = 4  # of these, for where the peak is
+REDRAWN = 0.1  # seconds between drawings while estimates get better
 EDGE = 1 - 1e-6  # radius of the directions that count as the horizon's: on it f is 0
 BAR, INSET, STRIP = 84, 138, 150  # points for the colour bar, for the inset, and of both below the disc
 
@@ -47,6 +53,86 @@ class Peak(NamedTuple):
     value: float
     w: np.ndarray
     reach: float
+
+
+class Place(NamedTuple):
+    """Where a hemisphere is drawn: pixels from the bottom left.
+
+    title: left end of the line that says `where` it is; at: lower left corner of the disc's picture, whose side is 2 half;
+    bar: box of the colour bar, or None; lens: lower left corner and side of the inset, or None.
+    """
+
+    up: float
+    title: np.ndarray
+    at: np.ndarray
+    radius: float
+    bar: np.ndarray | None
+    lens: np.ndarray | None
+    where: str
+
+    @property
+    def half(self):
+        return int(self.radius) + 2
+
+    @property
+    def center(self):
+        return self.at + self.half
+
+
+class Map:
+    """The quantity over a part of the disc: values, which get better where they are estimates, and their colours.
+
+    size: pixels; middle: of the picture, on the disc; pixel: the side of a pixel on the disc.
+    """
+
+    def __init__(self, view, gpu, state, wo, up, peak, name, size, middle, pixel):
+        self.gpu, self.name, self.size, self.pixel = gpu, f"hemisphere {name} {up:+g}", size, float(pixel)
+        model, slots = state.model, {f"of_{view.over}": view.quantity}
+        if view.over == "wm":
+            source = assemble("views/hemisphere_wm.frag", {**model.choices(), **slots})
+        else:
+            source = of_model("views/hemisphere_wi.frag", model, slots=slots)
+        self.program = gpu.program(source)
+        self.place = {"size": tuple(map(float, size)), "middle": tuple(map(float, middle)), "pixel": self.pixel}
+        self.uniforms = {"material": model, "wo": tuple(wo), "up": up, "peak": tuple(disc(peak.w))} | self.place
+        if view.over == "wm":
+            self.uniforms["alpha"] = model.alpha
+        self.values, self.side = None, 1
+
+    def draw(self, target, n=0, side=1, box=None):
+        """Pass n into a target in which a pixel stands for `side` along each side."""
+        place = {"size": tuple(c / side for c in self.place["size"]), "pixel": self.pixel * side}
+        uniforms = self.uniforms | place | {"share": 1 / (n + 1), "pass": n}
+        self.gpu.draw(self.program, target, uniforms, blend="mean" if n else None, box=box)
+
+    def small(self, side):
+        target = self.gpu.target(f"{self.name} {side}", tuple(-(-n // side) for n in self.size))
+        self.draw(target, side=side)
+        return target
+
+    def passes(self, most):
+        """Draw the mean of `most` passes, in steps; yield the number of whole ones after each."""
+        width, height = self.size
+        pace = Pace(self.gpu, self.program, np.minimum(chords(height, 1 / self.pixel + 1), width))
+        side = pace.preview(self.small)
+        if side > 1:
+            self.values, self.side = self.small(side), side
+            yield 0
+        target = self.gpu.target(f"{self.name} values", self.size)
+        for n in range(most):
+            for last in pace.strips(lambda box, n=n: self.draw(target, n, box=box), width):
+                if last:
+                    self.values, self.side = target, 1
+                yield n + last
+
+    def painted(self, view, most, paper):
+        """The framebuffer of the values' colours, of which the last is that of `most`."""
+        target = self.gpu.target(self.name, self.size, 4, "f1")
+        uniforms = {"side": float(self.side), "decades": float(view.decades), "paper": rgb(paper)} | self.place
+        uniforms["share"] = 1 / most if most > 0 else 0.0
+        program = self.gpu.program(assemble("views/hemisphere_paint.frag", {"radius": view.scale}))
+        self.gpu.draw(program, target, uniforms, {"values": self.values.color_attachments[0]})
+        return target
 
 
 @dataclass(frozen=True)
@@ -70,59 +156,63 @@ class Hemisphere(Drawn):
 
     @np.errstate(under="ignore")  # in the tails of a density
     def values(self, model, wo, w):
-        """The quantity in float64, 1/sr (...), for directions w (..., 3)."""
+        """The quantity, 1/sr (...), of a model or its Shader for directions w (..., 3)."""
         if self.quantity == "D":
             return slot("ndf", model.ndf).D(w, np.array(model.alpha))
         if self.quantity == "D_visible":
             return D_visible(model, wo, w)
         if self.quantity == "pdf":
             return model.pdf(wo, w)
-        if model.stochastic:
-            with seeded(0):  # the same numbers for all
-                f = mean_f(model, wo, w, WALKS).value
-        else:
-            f = model.f(wo, w)
-        return luminance(f) * (np.abs(w[..., 2]) if self.quantity == "f_cos" else 1.0)
+        return luminance(model.f(wo, w)) * (np.abs(w[..., 2]) if self.quantity == "f_cos" else 1.0)
 
     def hemispheres(self, model):
         """`up` of the hemispheres that are shown."""
         return (1.0,) if self.over == "wm" or model.index() is None else (1.0, -1.0)
 
-    def peak(self, model, wo, up=1.0):
-        """The Peak: the best of a grid that follows the lobe, then of steps from there that shrink."""
+    def estimated(self, model):
+        """Whether the quantity is a mean of estimates."""
+        return model.stochastic and self.quantity in ("f", "f_cos")
+
+    def peak(self, model, wo, up=1.0, quick=None):
+        """The Peak: the best of a grid that follows the lobe, then of steps from there that shrink.
+
+        quick: what evaluates the grid, if not the model: its Shader.
+        """
         turn = np.array([1.0, 1.0, up])
         if self.over == "wm":
             w = facets(np.array([0.0, 0.0, 1.0]), model.alpha, RAYS)[0]
         else:
             (side,) = (s for s in sides(wo, model.slopes(), model.index()) if s.up == up)
             w = quadrature(side.wo, side.alpha, RAYS)[0].wi
-        values = self.values(model, wo, w * turn)
-        seen = values >= FAINT * values.max()
-        best = disc(w[np.unravel_index(values.argmax(), values.shape)])
-        reach = float(np.linalg.norm(disc(w[seen]) - best, axis=-1).max())
-        if model.stochastic:  # further steps would climb its noise
-            return Peak(float(values.max()), of_disc(best), reach)
+        values = self.values(model if self.over == "wm" else quick or model, wo, w * turn)
+        best, reach = around(values, w)
         steps = np.stack(np.meshgrid(*[np.linspace(-1, 1, 5)] * 2), axis=-1).reshape(-1, 2)
-        for step in 0.1 * max(reach, 1e-6) * 0.6 ** np.arange(30):
+        for step in 0.1 * max(reach, 1e-6) * 0.4 ** np.arange(14):
             tries = best + step * steps
             tries /= np.maximum(np.linalg.norm(tries, axis=-1, keepdims=True) / EDGE, 1.0)
             best = tries[self.values(model, wo, of_disc(tries) * turn).argmax()]
         return Peak(float(self.values(model, wo, of_disc(best) * turn)), of_disc(best), reach)
 
-    def mass(self, model, wo):
-        """The integral that QUANTITIES names, by quadrature."""
+    def peak_of(self, table):
+        """The Peak of estimates in a Table."""
+        w = table.grid.wi * [1.0, 1.0, table.side.up]
+        values = luminance(table.f) * (w[..., 2] if self.quantity == "f_cos" else 1.0)
+        best, reach = around(values, w)
+        return Peak(float(values.max()), of_disc(best), reach)
+
+    def mass(self, model, wo, evaluator=None):
+        """The integral that QUANTITIES names, by quadrature of a model, or over directions to the light of its Shader."""
         if self.quantity == "D":
             return projected_area(model, (0.0, 0.0, 1.0))
         if self.quantity == "D_visible":
             return projected_area(model, wo) / float(slot("ndf", model.ndf).visible_area(wo, np.array(model.alpha)))
 
-        if model.stochastic and self.quantity != "pdf":
-            return float(luminance(albedo_with_error(model, wo).value))
+        evaluator = evaluator or model
 
         def function(wo, wi):
-            return (model.pdf(wo, wi) if self.quantity == "pdf" else luminance(model.f(wo, wi)) * np.abs(wi[..., 2]))[
-                ..., None
-            ]
+            if self.quantity == "pdf":
+                return evaluator.pdf(wo, wi)[..., None]
+            return luminance(evaluator.f(wo, wi))[..., None] * np.abs(wi[..., 2:])
 
         return float(integral(function, wo, model.slopes(), tolerance=1e-6, most=256, index=model.index()).value[0])
 
@@ -141,101 +231,127 @@ class Hemisphere(Drawn):
             yield draw, "", True
             return
         wo = direction(np.radians(state.directions.theta_o), np.radians(state.directions.phi_o))
-        peaks = {up: self.peak(model, wo, up) for up in self.hemispheres(model)}
-        draw = self.drawing(gpu, state, wo, peaks, size, scale)
-        up, peak = max(peaks.items(), key=lambda item: item[1].value)
-        theta, phi = np.degrees(angles(peak.w * [1.0, 1.0, up])).round(2) + 0.0  # which makes -0 a 0
-        note = f"peak {number(peak.value, 4)} / sr at θ {theta:g}°" + f", φ {phi % 360:g}°" * bool(theta)
-        if model.stochastic and self.quantity in ("f", "f_cos"):
-            note += f", by {WALKS} walks a pixel"
-        yield draw, note, False
-        yield draw, f"{note}; {QUANTITIES[self.quantity][1]} = {self.mass(model, wo):.6f}", True
+        tables = progressive(gpu, model, state.directions, passes=PASSES) if self.estimated(model) else None
+        for found in self.peaks(gpu, model, wo, tables):
+            peaks = dict(found)
+            if gpu.pace:
+                yield None, "", False
+        places = self.places(peaks, size, scale)
+        maps = {name: one for place in places for name, one in self.maps(gpu, state, wo, place, peaks, scale).items()}
+        runs = {name: one.passes(WALKS if tables else 1) for name, one in maps.items()}
+        runs["integral"] = self.integrals(gpu, model, wo, tables)
+        drawn, since = None, 0.0
+        for found, done in in_turn(gpu, runs):
+            if not maps.keys() <= found.keys():
+                yield None, "", False
+                continue
+            words, values = found.get("integral", ("", {}))
+            peaks |= {up: peaks[up]._replace(value=value) for up, value in values.items()}
+            if drawn is None or done or tables and time.perf_counter() - since > REDRAWN:
+                drawn, since = self.drawing(state, wo, peaks, places, maps, size, scale), time.perf_counter()
+            up, peak = max(peaks.items(), key=lambda item: item[1].value)
+            theta, phi = np.degrees(angles(peak.w * [1.0, 1.0, up])).round(2) + 0.0  # which makes -0 a 0
+            note = f"peak {number(peak.value, 4)} / sr at θ {theta:g}°" + f", φ {phi % 360:g}°" * bool(theta)
+            if tables:
+                walks = max(min(found[name] for name in maps), 1)
+                note += f", {walks} walk{'s' * (walks > 1)} a pixel"
+            yield drawn, note + f"; {QUANTITIES[self.quantity][1]} = {words}" * bool(words), done
 
-    def drawing(self, gpu, state, wo, peaks, size, scale):
-        draw = Drawing(size, scale, state.look.theme)
+    def peaks(self, gpu, model, wo, tables):
+        """Yield {up: Peak} of the hemispheres, one more each time, or from the first estimates in Tables."""
+        if tables:
+            for found, _ in islice(tables, FEW):
+                yield {t.side.up: self.peak_of(t) for t in found}
+            return
+        found = {}
+        for up in self.hemispheres(model):
+            found[up] = self.peak(model, wo, up, Shader(gpu, model))
+            yield found
+
+    def integrals(self, gpu, model, wo, tables):
+        """Yield the integral that QUANTITIES names, as words, and largest values by hemisphere where they get better."""
+        for found, _ in tables or ():
+            parts = [luminance(t.albedo) / t.side.dense for t in found]
+            cosine = [t.weight * np.abs(t.grid.wi[..., 2]) for t in found]
+            error = np.sqrt(sum(np.sum((c * luminance(t.error)) ** 2) for c, t in zip(cosine, found, strict=True)))
+            words = f"{sum(parts):.4f} ± {number(error, 1)}"
+            yield words, {t.side.up: self.peak_of(t).value for t in found}
+        if not tables:
+            yield f"{self.mass(model, wo, Shader(gpu, model)):.5f}", {}
+
+    def places(self, peaks, size, scale):
+        """The Places of the hemispheres in a picture of that size."""
         beside = len(peaks) if size[0] >= size[1] else 1  # and else one below the other
         part = np.array([size[0] / beside, size[1] * beside / len(peaks)])
-        most = max(peak.value for peak in peaks.values())
+        found = []
         for i, (up, peak) in enumerate(peaks.items()):
             corner = np.array([i * part[0], 0.0]) if beside > 1 else np.array([0.0, (len(peaks) - 1 - i) * part[1]])
+            center, radius, bar, lens = layout(part / scale, peak.reach < NARROW)
+            center, radius = corner + center * scale, radius * scale
+            at = np.round(center).astype(int) - int(radius) - 2
+            if bar:
+                bar = np.array(bar) * scale + [*corner, *corner]
+            if lens:
+                lens = np.round(np.array(lens) * scale + [*corner, 0.0]).astype(int)
             where = ("above the surface", "below it, seen through it")[i] if len(peaks) > 1 else OVER[self.over]
-            self.disc_of(draw, gpu, state, wo, up, peak, most, corner, part, where)
+            found.append(Place(up, corner + [12 * scale, part[1] - 33 * scale], at, radius, bar, lens, where))
+        return found
+
+    def maps(self, gpu, state, wo, place, peaks, scale):
+        """The Maps of a Place, {(up, "disc" or "inset"): Map}."""
+        peak = peaks[place.up]
+        shown = (self, gpu, state, wo, place.up, peak)
+        found = {
+            (place.up, "disc"): Map(*shown, "disc", (2 * place.half, 2 * place.half), (0.0, 0.0), 1 / place.radius)
+        }
+        if place.lens is not None:
+            side = int(place.lens[2])
+            found[place.up, "inset"] = Map(*shown, "inset", (side, side), disc(peak.w), 2 * across(peak) / side)
+        return found
+
+    def drawing(self, state, wo, peaks, places, maps, size, scale):
+        draw = Drawing(size, scale, state.look.theme)
+        most = max(peak.value for peak in peaks.values())
+        for place in places:
+            self.disc_of(draw, state, wo, place, peaks[place.up], most, maps)
         draw.text(QUANTITIES[self.quantity][0], (12 * scale, size[1] - 15 * scale), "ink", (0.0, 0.5), 12.5)
         return draw
 
-    def disc_of(self, draw, gpu, state, wo, up, peak, most, corner, size, where):
-        """One hemisphere in a part of the drawing, from `corner` on; `most` has the last colour."""
-        scale = draw.scale
-        inset = peak.reach < NARROW
-        center, radius, bar, lens = layout(np.divide(size, scale), inset)
-        center, radius = corner + center * scale, radius * scale
-        x, y = corner / scale
-        if bar:
-            bar = bar[0] + x, bar[1] + y, bar[2] + x, bar[3] + y
-            draw.text(where, corner + [12 * scale, size[1] - 33 * scale], "muted", (0.0, 0.5), 11.5)
-        half = int(radius) + 2
-        at = np.round(center).astype(int) - half
-        center = at + half
-        shown = (gpu, state, wo, up, peak, most)
-        draw.raster(at, self.map(*shown, "hemisphere", (2 * half, 2 * half), (0.0, 0.0), 1 / radius))
+    def disc_of(self, draw, state, wo, place, peak, most, maps):
+        """One hemisphere; `most` has the last colour."""
+        scale, up, center, radius = draw.scale, place.up, place.center, place.radius
+        if place.bar is not None:
+            draw.text(place.where, place.title, "muted", (0.0, 0.5), 11.5)
+        draw.raster(place.at, maps[up, "disc"].painted(self, most, draw.color("paper")))
         samples = disc(self.drawn(state.model, wo, up))
-
-        def place(p):
-            return center + radius * np.asarray(p)
-
         turn = np.radians(np.arange(0, 361, 4))
         ring = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
         phi = np.radians(state.directions.phi_o)
         draw.over()
         for theta in (30, 60):
-            draw.stroke(place(ring * np.sqrt(2) * np.sin(np.radians(theta / 2))), "#ffffff", 1.0, 0.35)
-        draw.stroke(place([-direction2(phi), direction2(phi)]), "#ffffff", 1.0, 0.35)
-        draw.stroke(place(ring), "muted", 1.2)
-        dots(draw, place(samples))
-        reach = max(1.3 * peak.reach, 1e-5)
-        if lens and inset:
-            left, bottom, side = np.round((np.array(lens) + [x, y, 0]) * scale).astype(int)
-            middle, pixel = disc(peak.w), 2 * reach / side
-            draw.raster((left, bottom), self.map(*shown, "inset", (side, side), middle, pixel))
+            draw.stroke(center + radius * ring * np.sqrt(2) * np.sin(np.radians(theta / 2)), "#ffffff", 1.0, 0.35)
+        draw.stroke(center + radius * np.array([-direction2(phi), direction2(phi)]), "#ffffff", 1.0, 0.35)
+        draw.stroke(center + radius * ring, "muted", 1.2)
+        dots(draw, center + radius * samples)
+        if place.lens is not None:
+            left, bottom, side = place.lens
+            inset, reach, middle = maps[up, "inset"], across(peak), disc(peak.w)
+            draw.raster((left, bottom), inset.painted(self, most, draw.color("paper")))
             draw.over()
             near = samples[np.all(np.abs(samples - middle) < reach * (1 - 4 * scale / side), axis=-1)]
-            dots(draw, (left + side / 2, bottom + side / 2) + (near - middle) / pixel)
+            dots(draw, (left + side / 2, bottom + side / 2) + (near - middle) / inset.pixel)
             draw.over()
             square(draw, (left + side / 2, bottom + side / 2), side / 2, "ink")
-            square(draw, place(middle), max(reach * radius, 5 * scale), "#ffffff")
+            square(draw, center + radius * middle, max(reach * radius, 5 * scale), "#ffffff")
             words = f"the peak, {number(np.degrees(2 * np.sqrt(2) * reach), 2)}° across"
             draw.text(words, (left + side / 2, bottom - 9 * scale), "muted", size=11.0)
         draw.over()
         self.names(draw, center, radius, wo, phi, up, state.model.index())
-        if bar:
+        if place.bar is not None:
             logarithmic = self.scale == "log" and most > 0
             low = most / 10**self.decades if logarithmic else 0.0
             axis = Axis(low, most or 1.0, scale="log" if logarithmic else "linear")
-            colorbar(gpu, draw, np.array(bar) * scale, axis)
-
-    def map(self, gpu, state, wo, up, peak, most, name, size, middle, pixel):
-        """The quantity's picture, with `middle` of the disc in its middle and `pixel` of the disc's radius a pixel."""
-        model = state.model
-        slots = {f"of_{self.over}": self.quantity, "radius": self.scale}
-        uniforms = {
-            "material": model,
-            "walks": WALKS,
-            "wo": tuple(wo),
-            "up": up,
-            "size": tuple(map(float, size)),
-            "middle": tuple(middle),
-        }
-        uniforms |= {"pixel": float(pixel), "peak": tuple(disc(peak.w)), "decades": float(self.decades)}
-        uniforms |= {"share": 1 / most if most > 0 else 0.0}
-        uniforms |= {"paper": rgb(Drawing(size, theme=state.look.theme).color("paper"))}
-        if self.over == "wm":
-            uniforms["alpha"] = model.alpha
-            source = assemble("views/hemisphere_wm.frag", {**model.choices(), **slots})
-        else:
-            source = of_model("views/hemisphere_wi.frag", model, slots=slots)
-        target = gpu.target(f"hemisphere {name} {up:+g}", size, 4, "f1")
-        gpu.draw(gpu.program(source), target, uniforms)
-        return target
+            colorbar(maps[up, "disc"].gpu, draw, place.bar, axis)
 
     def names(self, draw, center, radius, wo, phi, up, index):
         """Names of rings and directions, each on a chip of paper."""
@@ -281,6 +397,17 @@ def of_disc(p):
     """The direction (..., 3) at a place (..., 2) on the disc."""
     r2 = np.sum(p * p, axis=-1)
     return vec(p[..., 0] * np.sqrt(2 - r2), p[..., 1] * np.sqrt(2 - r2), 1 - r2)
+
+
+def around(values, w):
+    """Of values over directions w (..., 3): the place (2,) of the largest on the disc, and how far those over FAINT of it are."""
+    best = disc(w[np.unravel_index(values.argmax(), values.shape)])
+    return best, float(np.linalg.norm(disc(w[values >= FAINT * values.max()]) - best, axis=-1).max())
+
+
+def across(peak):
+    """Half of the side of a Peak's inset, on the disc."""
+    return max(1.3 * peak.reach, 1e-5)
 
 
 def direction2(phi):

@@ -6,14 +6,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..measure.advice import EXACT, HEADS, amount, factor, rows, sentences, tone
+from ..measure.advice import EXACT, HEADS, amount, factor, of_what, rows, sentences, tone
 from ..measure.error import METRICS
-from ..measure.least import at, least, questions, settled
+from ..measure.least import least
+from ..measure.questions import at, questions, settled
 from ..model import Invalid, choice, param
-from .chart import LETTER, REDRAWN, cut, wrapped
+from .chart import REDRAWN
 from .compare import HEAD, difference_map, layout, side_of
 from .develop import develop
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, cut, width_of, wrapped
 
 PICTURED = tuple(name for name, metric in METRICS.items() if metric.compares == "pictures")
 TITLE, ROW, LINE = 30, 19, 15  # points: the heading, a row of the table, a line of words
@@ -42,8 +43,8 @@ class Least(Drawn):
 
     def drawings(self, gpu, state, size, scale=1.0):
         asked, _ = questions(state, self.metric)
-        most = at(state, asked, [q.top for q in asked])
-        reference = Sphere(gpu.beside("least reference"), most, settled(most))
+        top = [q.top for q in asked]
+        reference = Sphere(gpu.beside("least reference"), at(state, asked, top), using(asked, top))
         page = Page(self, gpu, state, size, scale)
         answering, answer = self.answer(gpu, state), None
         drawn, since = None, 0.0
@@ -60,7 +61,8 @@ class Least(Drawn):
                 drawn, since = page.progress(asked, reference, doing), time.perf_counter()
             yield drawn, doing, False
         noise = state.views["sphere"].noise  # what is shown may have as much as elsewhere
-        reduced = Sphere(gpu.beside("least reduced"), answer.reduced.with_view("sphere", noise=noise), answer.reduced)
+        chosen = using([s.question for s in answer.steps], [s.question.methods.index(s.chosen) for s in answer.steps])
+        reduced = Sphere(gpu.beside("least reduced"), answer.reduced.with_view("sphere", noise=noise), chosen)
         side = page.room(rows(answer), sentences(answer)).side
         drawn, done = None, False
         while not done:
@@ -73,10 +75,10 @@ class Least(Drawn):
 
 
 class Sphere:
-    """The picture of a state's sphere, better and better. loads: the state that a click on it leads to."""
+    """The picture of a state's sphere, better and better. change: what a click on it does to a state."""
 
-    def __init__(self, gpu, state, loads):
-        self.gpu, self.state, self.loads = gpu, state, loads
+    def __init__(self, gpu, state, change):
+        self.gpu, self.state, self.change = gpu, state, change
         self.run, self.picture, self.side = None, None, 0
 
     def better(self, side):
@@ -175,7 +177,7 @@ class Page:
         width, height = developed.size
         corner = np.round([(left + right - width) / 2, (bottom + top - height) / 2])
         draw.raster(corner, developed)
-        draw.link((*corner, *(corner + developed.size)), f"{methods}\nclick: to this state", loading(sphere.loads))
+        draw.link((*corner, *(corner + developed.size)), f"{methods}\nclick: to these methods", sphere.change)
 
     def difference(self, draw, box, answer, spheres):
         targets = [s.target for s in spheres]
@@ -193,10 +195,9 @@ class Page:
         self.head(draw, box, words)
         covered = pixels[0][..., 3] > 0
         mean, other = (float(p[covered][:, :3].mean()) for p in pixels)
-        metric = METRICS[self.view.metric].title
         tips = [
             "Reduced less reference, of the reference's mean; red where it is brighter",
-            f"{metric}: {amount(answer.error.value, answer.metric)}",
+            f"{of_what(answer)}: {amount(answer.error.value, answer.metric)}",
             f"on average: {tone(other / mean - 1) or 'as bright'}" if mean > 0 else "the reference is black",
         ]
         draw.link(box, "\n".join(tips))
@@ -235,7 +236,7 @@ class Page:
         """The table of ladders with its upper edge at `top`, points."""
         width = self.width
         columns = list(range(len(HEADS)))
-        wide = [max(LETTER * WORDS * len(row[i]) for row in [HEADS, *found]) + GAP for i in columns]
+        wide = [max(width_of(row[i], WORDS) for row in [HEADS, *found]) + GAP for i in columns]
         for i in (None, *SPARED):
             columns = [c for c in columns if c != i]
             if sum(wide[c] for c in columns) <= width - 2 * MARGIN + GAP:
@@ -258,9 +259,9 @@ class Page:
 
 def fitting(choices, room, size):
     """The first of some words that has `room` points, or what of the last has."""
-    return next((w for w in choices if LETTER * size * len(w) <= room), cut(choices[-1], room, size))
+    return next((w for w in choices if width_of(w, size) <= room), cut(choices[-1], room, size))
 
 
-def loading(other):
-    """A function that gives a state the methods of another one of the same material."""
-    return lambda state: state.with_model(other.model).with_view("sphere", **vars(other.views["sphere"]))
+def using(asked, combination):
+    """A function that gives a state the methods of a combination, and all the samples that it says."""
+    return lambda state: settled(at(state, asked, combination))

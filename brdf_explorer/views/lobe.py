@@ -54,18 +54,23 @@ class Lobe(Diagram):
         above.append(outlines[0])
         over = gpu.program(assemble("views/over.frag"))
         surfaces = [self.surfaces(gpu.beside(f"lobe {i}"), t, camera, share) for i, t in enumerate(values)]
+        picture = None
         for layers in zip(*surfaces, strict=True):
+            (near, done), *far = layers
+            if picture and not done:
+                yield picture
+                continue
             target.clear(*rgb(colors["paper"]), 1.0)
-            for layer, _ in layers[1:]:  # seen through the surface
+            for layer, _ in far:  # seen through the surface
                 picture = {"picture": layer.color_attachments[0]}
                 gpu.draw(over, target, {"share": 1.0}, picture, blend="premultiplied")
                 draw_lines(gpu, target, outlines[1:])
             draw_lines(gpu, target, below)
-            layer, done = layers[0]
-            gpu.draw(over, target, {"share": 1.0}, {"picture": layer.color_attachments[0]}, blend="premultiplied")
+            gpu.draw(over, target, {"share": 1.0}, {"picture": near.color_attachments[0]}, blend="premultiplied")
             draw_lines(gpu, target, above)
             legend = self.draw_bar(gpu, target, size, scale, peak, colors)
-            yield Picture(target, labels=labels + legend, done=done)
+            picture = Picture(target, labels=labels + legend, done=done)
+            yield picture
 
     def peak(self, values):
         """The largest of what the radius shows of a Table."""
@@ -78,7 +83,7 @@ class Lobe(Diagram):
         return camera.stroke(wi * radius(profile, self.radius, self.decades)[:, None], colors["ink"], 1.0, 0.45)
 
     def surfaces(self, gpu, values, camera, share, paint="value", uniforms=None):
-        """The lobe's triangles as (framebuffer of colour and coverage, done): one drawing, then the mean of several.
+        """The lobe's triangles as (framebuffer of colour and coverage, done): one drawing at first, at last the mean of several.
 
         share: radius 1 over the largest value. paint: "value", the map's colours, or "plain", of the uniform `ink`.
         """
@@ -95,10 +100,10 @@ class Lobe(Diagram):
             once.clear()
             gpu.draw(program, once, uniforms | camera.uniforms(jitter), textures, index=surface(gpu), depth=True)
             if n == 0:
-                yield once, False
                 mean.clear()
             gpu.draw(add, mean, {"share": 1 / PASSES}, {"picture": once.color_attachments[0]}, blend="add")
-        yield mean, True
+            done = n + 1 == PASSES
+            yield mean if done else once, done
 
     def draw_bar(self, gpu, target, size, scale, peak, colors):
         """Draw the legend, the map's colours, if there is room; its Labels, the values they stand for."""

@@ -1,6 +1,5 @@
 """The microsurface: rough ground with the material's slopes, which of it light and viewer reach, and what Smith says of it."""
 
-import textwrap
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +9,7 @@ from ..measure.surface import BINS, G1, LAWS, P2, A, along, first_hit, lit, meas
 from ..model import Invalid, choice, declared, param
 from .axes import Axes, Axis
 from .diagram import arrow, nice_step, number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, width_of, wrapped
 from .picture import PALETTES, R2, Curves, rgb
 
 KINDS = {"beckmann": "gaussian", "ggx": "ellipsoids"}
@@ -22,7 +21,6 @@ SURFACES = 16  # that are measured: the lit area's standard error is then below 
 ROOM = (560, 400)  # points from which a picture has room for two columns, and for two rows
 TALL = (400, 600)  # points from which a single column has room for all
 CLASSES = (("visible", "ink"), ("shadowed", "red"), ("masked", "blue"), ("both", "purple"))
-LETTER = 0.52  # width of a letter over the height of its line, on average
 RAYS = 9  # places of the profile that rays are drawn from
 
 
@@ -274,9 +272,10 @@ class Microsurface(Drawn):
         at = left + 12 * scale
         for (name, color), share in zip(CLASSES, shares, strict=True):
             words = f"{name} {100 * share:.0f} %"
-            if at + 6.0 * scale * len(words) < right:
+            extent = width_of(words, 12.0) * scale
+            if at + extent < right:
                 say(draw, words, (at, top - 10 * scale), color, (0.0, 0.5))
-            at += (5.6 * len(words) + 14) * scale
+            at += extent + 14 * scale
 
         # rays from some places: to the light and to the viewer, or to what is in the way
         row = cut.rows[0]
@@ -468,8 +467,7 @@ def draw_visibility(draw, box, ground, found):
     """What a direction sees of the surface, by Smith and measured, over its angle; and why they differ."""
     scale, law = draw.scale, LAWS[ground.kind]
     left, bottom, right, top = box
-    letters = max(int((right - left - 28 * scale) / (5.3 * scale)), 8)
-    found_room = (textwrap.wrap(why, letters) for why in reasons(ground, found))
+    found_room = (wrapped([why], (right - left) / scale - 28, 11.5) for why in reasons(ground, found))
     words = next((lines for lines in found_room if top - bottom >= (190 + 15 * len(lines)) * scale), [])
     x, y = Axis(0.0, 90.0, "θ"), Axis(0.0, 1.0, "share that is seen from θ")
     axes = Axes(draw, inside(box, scale, 40 + (10 + 15 * len(words)) * bool(words)), x, y)
@@ -531,12 +529,12 @@ def reasons(ground, found):
 def say(draw, words, at, color="ink", anchor=(0.5, 0.5), size=12.0):
     """A text where it has room: inside the picture and clear of those before, else none."""
     width, height = draw.size
-    extent = np.array([LETTER * len(words), 1.2]) * size * draw.scale
+    extent = np.array([width_of(words, size), 1.2 * size]) * draw.scale
     x, y = at[0] - anchor[0] * extent[0], at[1] - (1 - anchor[1]) * extent[1]
     if x < 0 or y < 0 or x + extent[0] > width or y + extent[1] > height:
         return
     for b in draw.labels:
-        across, down = LETTER * len(b.text) * b.size * draw.scale, 1.2 * b.size * draw.scale
+        across, down = width_of(b.text, b.size) * draw.scale, 1.2 * b.size * draw.scale
         left, low = b.x - b.anchor[0] * across, height - b.y - (1 - b.anchor[1]) * down
         if x < left + across and left < x + extent[0] and y < low + down and low < y + extent[1]:
             return
@@ -545,5 +543,5 @@ def say(draw, words, at, color="ink", anchor=(0.5, 0.5), size=12.0):
 
 def paragraph(draw, words, at, width, color="ink", size=12.5):
     """Lines of text from the top left on."""
-    for i, line in enumerate(textwrap.wrap(words, max(int(width / (0.5 * size * draw.scale)), 8))):
+    for i, line in enumerate(wrapped([words], width / draw.scale, size)):
         say(draw, line, (at[0], at[1] - 1.4 * size * draw.scale * i), color, (0.0, 0.5), size)

@@ -1,6 +1,6 @@
 """What a view gives: a picture with its labels, or named curves. Window, exporter, command line and tests consume these."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -66,13 +66,13 @@ class Label:
 class Link:
     """A place in a picture that reacts to the mouse. box: left, top, right, bottom in pixels from the top left.
 
-    tip shows while the mouse is there, line by line; a click makes `state` the current one, if there is one, or what it gives
-    for the current one, if it is a function.
+    tip shows while the mouse is there, line by line; a click makes `change` of the current state the current one. It is a
+    function, so that all that the click is not about stays as it is then; None where a click does nothing.
     """
 
     box: tuple[float, float, float, float]
     tip: str
-    state: object = None
+    change: Callable | None = None
 
 
 @dataclass
@@ -113,6 +113,9 @@ class View(Declared):
         """The values that its picture depends on; while they stay equal, so does the picture."""
         raise NotImplementedError
 
-    def pictures(self, gpu, state, size, scale=1.0) -> Iterator[Picture]:
-        """Pictures of the state, from the first to the best. size: pixels; scale: pixels per point of lines and text."""
+    def pictures(self, gpu, state, size, scale=1.0) -> Iterator[Picture | None]:
+        """Pictures of the state, from the first to the best. size: pixels; scale: pixels per point of lines and text.
+
+        Where steps have a time to keep (Gpu.pace), a step that ends before the first picture is there gives None.
+        """
         raise NotImplementedError

@@ -1,6 +1,7 @@
 """The slice through the plane of incidence as a polar plot: f or f cos over the direction to the light."""
 
 from dataclasses import dataclass
+from itertools import count
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ from ..measure.laws import Shader
 from ..measure.noise import mean_f
 from ..model import choice
 from .diagram import QUANTITIES, Diagram, apart, arrow, nice_step, number, powers_below, radius
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, cut, width_of
 from .picture import Curves
 from .table import LONGEST, PASSES, progressive
 
@@ -20,9 +21,9 @@ FOOT = 46  # points below it, for values and a note; half of that below a whole 
 NODES = 385  # of each half of a slice: many more than the lobe has, so that no tip has corners in a large picture
 FEW = 97  # the same of estimates, which are the better for being few
 LINE = 18  # points from one line of the legend to the next
-LETTER = 5.6  # points that a letter of the legend takes, on average
 CHANNELS = ("red", "green", "blue")
-LETTERS = 10  # that a line of the legend has room for at least
+WORDS = 12.5  # height of the legend's letters, points
+LEAST = 55  # and points that its lines have room for at least
 
 
 PARTS = ("red", "purple", "green")  # colours of the parts of a material
@@ -101,16 +102,17 @@ class Polar(Drawn, Diagram):
         nodes = FEW if model.stochastic else NODES
         runs = [progressive(gpu, m, state.directions, 2, nodes, passes=passes) for m in shown.values()]
         last = [next(run) for run in runs]
-        while True:
+        for turn in count():  # one part in each step, as each takes as long as the whole
             sides = zip(*(tables for tables, _ in last), strict=True)
             found = [
                 s for tables in sides for s in self.of_tables(material, index, dict(zip(shown, tables, strict=True)))
             ]
             done = all(final for _, final in last)
-            yield found, last[0][0][0].walks, done
+            yield found, min(tables[0].walks for tables, _ in last), done
             if done:
                 return
-            last = [next(run, (one, True)) for run, (one, _) in zip(runs, last, strict=True)]
+            at = turn % len(runs)
+            last[at] = next(runs[at], (last[at][0], True))
 
     @np.errstate(under="ignore")  # in the tails of a density
     def of_tables(self, material, index, tables):
@@ -205,7 +207,7 @@ class Polar(Drawn, Diagram):
             if np.any(np.abs(at - viewer) > np.array([20, 12]) * scale):
                 draw.text(f"{abs(round(np.degrees(a)))}°", at, "muted")
         words = [number(value) for value in rings]
-        for i in apart(extent * reach(rings), [(5.5 * len(w) + 4) * scale for w in words]):
+        for i in apart(extent * reach(rings), [(width_of(w, 11.0) + 4) * scale for w in words]):
             draw.text(words[i], place(np.pi / 2, reach(rings[i])) - [0, 12 * scale], "muted", size=11.0)
 
         # the viewer, and dashed where a mirror and a flat surface of the active material would send its ray
@@ -237,7 +239,7 @@ class Polar(Drawn, Diagram):
             legend.append(("float64", "reference"))
         for words, color, side, y in self.columns(legend, size, scale, whole):
             x = 12 * scale if side == "left" else width - 12 * scale
-            draw.text(words, (x, height - y), color, (0.0 if side == "left" else 1.0, 0.5), 12.5)
+            draw.text(words, (x, height - y), color, (0.0 if side == "left" else 1.0, 0.5), WORDS)
         return draw, f"peak {number(peak, 4)} / sr at θo = {state.directions.theta_o:g}°"
 
     def color(self, slice, colors):
@@ -250,22 +252,22 @@ class Polar(Drawn, Diagram):
         Words that are too long end in an ellipsis. Where lines do not suffice, the last says how many more there are.
         """
         center, extent = self.disc(size, scale, whole)
-        least = min(LETTERS, max(len(words) for words, _ in legend))
+        least = min(LEAST, max(width_of(words, WORDS) for words, _ in legend))
         lines = []
         for side, around in (("left", 28), ("right", 50)):
             clear = extent + around * scale
             for y in np.arange(16, size[1] / scale, LINE) * scale:
                 above = size[1] - y - 8 * scale - center[1]
                 end = size[0] / 2 - (np.sqrt(clear**2 - above**2) if 0 <= above < clear else 8 * scale)
-                letters = int((end - 12 * scale) / (LETTER * scale))
-                if above < 0 or letters < least:
+                room = end / scale - 12
+                if above < 0 or room < least:
                     break
-                lines.append((letters, side, y))
+                lines.append((room, side, y))
         if not lines:  # a tiny picture says what it shows, no more
             return [(*legend[0], "left", 16 * scale)]
         if len(lines) < len(legend):
             legend = [*legend[: len(lines) - 1], (f"+ {len(legend) - len(lines) + 1} more", "muted")]
         return [
-            (words if len(words) <= letters else words[: letters - 1].rstrip() + "…", color, side, y)
-            for (words, color), (letters, side, y) in zip(legend, lines, strict=False)
+            (cut(words, room, WORDS), color, side, y)
+            for (words, color), (room, side, y) in zip(legend, lines, strict=False)
         ]

@@ -1,18 +1,16 @@
 """The readings: where a formula of the lecture errs or can be read in two ways, both, and what the wrong one costs."""
 
-import textwrap
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..measure.readings import COARSE, FINE, found
+from ..measure.readings import COARSE, FINE, READINGS, found
 from ..model import choice
 from .axes import Axes, Axis
 from .diagram import number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, width_of, wrapped
 from .picture import Curves
 
-LETTER = 0.46  # width of a letter over the height of its line, on average
 LINE = 1.45  # from line to line, over a line's height
 MARGIN = 14  # points
 WIDE = 620  # points from which words and curves stand side by side
@@ -119,7 +117,7 @@ class Readings(Drawn):
     reading: str = choice("stretching", tuple(WORDS), "the formula that has two readings")
 
     def shows(self, state):
-        return state  # what a click leads to holds all of it
+        return (self, state.material, state.directions, state.look.theme)
 
     def found(self, state, effort=FINE):
         """(measure.readings.Found, why it is of an example or "")."""
@@ -141,14 +139,14 @@ class Readings(Drawn):
         """Names of all readings, then words and curves of this one."""
         s, words = draw.scale, WORDS[self.reading]
         width, height = draw.size[0] / s, draw.size[1] / s
-        top = height - self.names(draw, state)
+        top = height - self.names(draw)
         wide = width >= WIDE
         head = list(heading(words, height < LOW[wide]))
         rest = [*costs(f), *about(state, f, example), *reason(words)]
         if wide:
             column = Column(draw, MARGIN, COLUMN * width - MARGIN, top)
             fill(column, MARGIN, head + rest)
-            self.sphere(draw, state, f, column)
+            self.sphere(draw, f, column)
             plot(draw, (COLUMN * width, 0.0, width, top), f)
             return
         column = Column(draw, MARGIN, width - MARGIN, top)
@@ -161,39 +159,53 @@ class Readings(Drawn):
         fill(column, foot, head + rest)
         plot(draw, (0.0, 0.0, width, column.y), f)
 
-    def names(self, draw, state):
+    def names(self, draw):
         """A line of the readings' names, each a link, as many as have room; its height in points."""
         s, width = draw.scale, draw.size[0] / draw.scale
         y = draw.size[1] / s - 15
         parts = [(name, words.name) for name, words in WORDS.items()]
-        if sum(LETTER * 12 * len(w) + 18 for _, w in parts) > width - 2 * MARGIN:
+        if sum(width_of(w, 12.0) + 18 for _, w in parts) > width - 2 * MARGIN:
             parts = [(self.reading, WORDS[self.reading].name)]
         x = MARGIN
         for name, text in parts:
-            extent = LETTER * 12 * len(text)
+            extent = width_of(text, 12.0)
             here = name == self.reading
             draw.text(text, (x * s, y * s), "ink" if here else "accent", (0.0, 0.5), 12.0)
             if here:
                 draw.stroke(np.array([(x, y - 10), (x + extent, y - 10)]) * s, "accent", 1.6)
             else:
                 box = np.array([x - 4, y - 10, x + extent + 4, y + 10]) * s
-                draw.link(box, WORDS[name].slide, state.with_view("readings", reading=name))
+                draw.link(box, WORDS[name].slide, reading_of(name))
             x += extent + 18
         return 36
 
-    def sphere(self, draw, state, f, column):
+    def sphere(self, draw, f, column):
         """A link to the sphere with the right reading, as printed, where it can be shown there."""
         words, s = WORDS[self.reading], draw.scale
         if words.sphere is None or column.y - MARGIN < 22:
             return
-        model = replace(f.model, **words.sphere)
-        shown = state.with_model(model).with_view("sphere", formulas="textbook")
         text = "the right one on the sphere, formulas as printed"
         column.y -= 8
         y = column.y
         column.line(text, "accent", 12.0)
-        box = np.array([MARGIN, column.y, MARGIN + LETTER * 12 * len(text), y]) * s
-        draw.link(box, "click: this material with these formulas, on the sphere", shown)
+        box = np.array([MARGIN, column.y, MARGIN + width_of(text, 12.0), y]) * s
+        draw.link(box, "click: this material with these formulas, on the sphere", self.printed(f.model))
+
+    def printed(self, example):
+        """A function that gives a state the right one of the formulas as printed; another material where it has none."""
+
+        def change(state):
+            model = example if READINGS[self.reading].applies(state.model) else state.model
+            return state.with_model(replace(model, **WORDS[self.reading].sphere)).with_view(
+                "sphere", formulas="textbook"
+            )
+
+        return change
+
+
+def reading_of(name):
+    """A function that shows a reading."""
+    return lambda state: state.with_view("readings", reading=name)
 
 
 class Column:
@@ -203,7 +215,7 @@ class Column:
         self.draw, self.left, self.right, self.y = draw, left, right, y
 
     def wrapped(self, text, size):
-        return textwrap.wrap(text, max(int((self.right - self.left) / (LETTER * size)), 12))
+        return wrapped([text], self.right - self.left, size)
 
     def line(self, text, color="ink", size=12.5, at=None, anchor=0.0):
         """A line; at: another place along it, which does not move on to the next."""
@@ -332,7 +344,7 @@ def plot(draw, box, f):
         color, words = STYLE.get(name) or (next(others), name)
         axes.line(f.x, curve, color, 2.2 if name in STYLE else 1.6)
         draw.text(words, (at * s, (frame[3] + 12) * s), color, (0.0, 0.5), 11.5)
-        at += LETTER * 11.5 * len(words) + 16
+        at += width_of(words, 11.5) + 16
 
 
 def ranged(values):

@@ -15,7 +15,7 @@ from ..measure.sampling import chi_square
 from ..model import choice, param
 from .axes import TICK, Axes, Axis
 from .diagram import arrow, number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, width_of
 from .picture import Curves, rgb
 
 PANELS = {  # in the order of their importance where there is little room, with their titles
@@ -41,7 +41,6 @@ FACETS = 24  # of the profile
 BINS = 24  # of the histogram
 ROUNDING = 1e-12  # variance over the squared mean, and relative error, below which they are float64's rounding
 PER_DECADE = 12  # bins of the weights
-LETTER = 6.4  # points that a letter of the legend takes, on average
 
 
 @dataclass
@@ -101,6 +100,7 @@ class Sampling(Drawn):
         better = moments(list(found.models.values()), wo, found.light, rays)
         while found.moments is None:
             found.moments = next(better)
+            yield None
         if found.moments.mean <= 0:  # a black material
             yield found
             return
@@ -108,7 +108,11 @@ class Sampling(Drawn):
             found.runs[name] = Runs(model, wo, found.light, seed)
             yield from (None for _ in found.runs[name].double())
         yield found
-        found.expected = expected(state.model, wo)
+        theta, share = [], []
+        for part in expected(state.model, wo):
+            theta, share = [*theta, part[0]], [*share, part[1]]
+            yield None
+        found.expected = np.concatenate(theta), np.concatenate(share)
         for news in better:
             found.moments = news or found.moments
             yield news and found
@@ -141,12 +145,12 @@ class Sampling(Drawn):
     # --- drawing -------------------------------------------------------------------------------------------------------
 
     def drawings(self, gpu, state, size, scale=1.0):
-        drawn, found, start = None, None, 0.0
+        found, drawn, start = None, None, time.perf_counter()
         for news in self.measure(gpu, state, timed=self.show in ("all", "variance", "time")):
             if news:
                 found, drawn = news, self.drawing(state, news, size, scale)
-            if found and time.perf_counter() - start >= STEP:
-                yield drawn, note(found), False
+            if (found or gpu.pace) and time.perf_counter() - start >= STEP:
+                yield drawn, note(found) if found else "", False
                 start = time.perf_counter()
         yield self.drawing(state, found, size, scale), note(found), True
 
@@ -178,11 +182,12 @@ def note(found):
     return f"{n} samples in each of {RUNS} runs"
 
 
-@np.errstate(under="ignore")
-def expected(model, wo):
-    """Polar angles (n,) of directions that follow the lobe, and the probability by pdf that each stands for."""
-    g, weight = quadrature(wo, model.slopes(), 320, model.index())
-    return angles(g.wi)[0].ravel(), (model.pdf(wo, g.wi) * weight).ravel()
+def expected(model, wo, rays=320):
+    """Yield, in parts, polar angles (n,) of directions that follow the lobe, and the probability by pdf that each stands for."""
+    g, weight = quadrature(wo, model.slopes(), rays, model.index())
+    for wi, w in zip(np.array_split(g.wi, 16), np.array_split(weight, 16), strict=True):
+        with np.errstate(under="ignore"):
+            yield angles(wi)[0].ravel(), (model.pdf(wo, wi) * w).ravel()
 
 
 def header(draw, state, found, colors):
@@ -206,10 +211,10 @@ def header(draw, state, found, colors):
         draw.text(words, (12 * s, draw.size[1] - (y - 6) * s), color, (0.0, 0.5), points)
     x, y = 12.0, y + 18
     for name, color in colors.items():
-        if x > 12 and x + LETTER * len(name) > width - 8:
+        if x > 12 and x + width_of(name, 12.5) > width - 8:
             x, y = 12.0, y + 17
         draw.text(name, (x * s, draw.size[1] - (y - 6) * s), color, (0.0, 0.5), 12.5)
-        x += LETTER * len(name) + 14
+        x += width_of(name, 12.5) + 14
     return y + 8
 
 

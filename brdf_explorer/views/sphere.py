@@ -5,6 +5,7 @@ as rough there (shaders/views/body_ball.glsl).
 """
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from ..environment import environment, toward, turn
 from ..glsl import assemble, of_model
 from ..model import choice, param
 from .diagram import number
+from .pace import Pace, chords
 from .picture import R2, Picture, View
 
 SIDES = 32  # of the polygon that disc.vert draws around the sphere
@@ -65,11 +67,25 @@ class Sphere(View):
         target = gpu.target("sphere", size)  # new ones are clear, and what lies outside of the disc stays so
         drawn = bool(textures) or body == "ball" or state.model.stochastic  # by random numbers
         most = self.samples if drawn else SMOOTH
-        noise, half = None, None
+        pace = Pace(gpu, program, chords(size[1], self.radius(size) + 1))
+
+        def draw(box):
+            blend = "mean" if n > 1 else None
+            gpu.draw(program, target, uniforms, textures, vertices=3 * SIDES, blend=blend, box=box)
+
+        noise, half, picture = None, None, None
         for n in range(1, most + 1):
             jitter = (R2 * (n - 1) + 0.5) % 1.0 - 0.5
             uniforms |= {"jitter": tuple(jitter), "share": 1 / n, "pass": n - 1}
-            gpu.draw(program, target, uniforms, textures, vertices=3 * SIDES, blend="mean" if n > 1 else None)
+            side = pace.preview(partial(small, gpu, program, size, uniforms, textures)) if n == 1 else 1
+            if side > 1:
+                magnify(gpu, target, small(gpu, program, size, uniforms, textures, side), side, uniforms)
+                shown = self.over_background(gpu, target, uniforms, textures)
+                picture = Picture(shown, linear=True, note=f"1 sample in {side} x {side} pixels", done=False)
+                yield picture
+            for last in pace.strips(draw, size[0]):
+                if not last:
+                    yield picture
             if drawn and n >= 16 and n & (n - 1) == 0:
                 mean = gpu.pixels(target)
                 noise = standard_error(mean, half) if half is not None else None
@@ -78,7 +94,8 @@ class Sphere(View):
             note = f"{n} sample{'s' * (n > 1)} a pixel"
             note += f", noise {number(100 * noise, 2)} %" if noise is not None else ""
             shown = self.over_background(gpu, target, uniforms, textures)
-            yield Picture(shown, linear=True, note=note, done=done)
+            picture = Picture(shown, linear=True, note=note, done=done)
+            yield picture
             if done:
                 return
 
@@ -91,6 +108,22 @@ class Sphere(View):
         over = gpu.program(assemble("views/over.frag"))
         gpu.draw(over, shown, {"share": 1.0}, {"picture": target.color_attachments[0]}, blend="premultiplied")
         return shown
+
+
+def small(gpu, program, size, uniforms, textures, pixels):
+    """The framebuffer with a sphere of that size drawn so small that a pixel stands for `pixels` along a side."""
+    target = gpu.target(f"sphere.{pixels}", tuple(-(-n // pixels) for n in size))
+    place = {"size": tuple(map(float, target.size)), "center": tuple(c / pixels for c in uniforms["center"])}
+    place["radius"] = uniforms["radius"] / pixels
+    gpu.draw(program, target, uniforms | place, textures, vertices=3 * SIDES)
+    return target
+
+
+def magnify(gpu, target, drawn, pixels, uniforms):
+    """Draw over the sphere of the target what is `drawn` as `small` says."""
+    program = gpu.program(assemble("views/magnify.frag"), assemble("views/disc.vert"))
+    textures = {"picture": drawn.color_attachments[0]}
+    gpu.draw(program, target, uniforms | {"pixels": float(pixels)}, textures, vertices=3 * SIDES)
 
 
 def standard_error(mean, half):

@@ -6,10 +6,12 @@ import numpy as np
 
 from ..lib.common import mirror
 from ..measure.grid import angles, direction
-from ..measure.stability import FORMS, LIMIT, REGIMES, stability
+from ..measure.regimes import LIMIT, REGIMES
+from ..measure.stability import stability
+from ..measure.subjects import FORMS
 from ..model import Param, choice, declared, param
 from .diagram import number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, cut, width_of
 from .picture import rgb
 
 COLORS = {  # of verdicts; errors by decades
@@ -48,9 +50,10 @@ WORDS = {  # what stands in a cell, and what it means
     "ill": ("κ", "ill-conditioned"),
 }
 FORM_WORDS = {"stable": "as rearranged", "textbook": "as printed"}
-HEAD, SIDE, LETTER = 58, 10, 5.2  # points above the cells and beside them, and of a small letter
+HEAD, SIDE = 58, 10  # points above the cells and beside them
 LABELS, NARROW, LEAST_LABELS = 104, 82, 72  # points of the column of names, by the width
 ROW, MOST = 25, 58  # points of a row, at least and at most
+SMALL = 10.5  # height of the legend's letters, points
 LEAST = 26  # points of a column whose cells have letters; narrower ones have their colours and tooltips
 
 
@@ -67,12 +70,14 @@ class Stability(Drawn):
     first: int = param(0, 0, 60, "rows that are passed over, where not all have room")
 
     def shows(self, state):
-        return state  # what a click leads to holds all of it
+        return (self, type(state.model), state.model.choices(), state.look.theme)
 
     def drawings(self, gpu, state, size, scale=1.0):
+        shown = None
         for found in stability(gpu, state.model, everything=self.rows == "all"):
-            draw, note = self.drawing(found, state, size, scale)
-            done = found.progress == 1
+            if found is not shown:
+                draw, note = self.drawing(found, state, size, scale)
+            shown, done = found, found.progress == 1
             yield draw, note if done else f"{100 * found.progress:.0f} % measured; {note}", done
 
     def drawing(self, found, state, size, scale):
@@ -84,7 +89,7 @@ class Stability(Drawn):
         across = max((width - labels - SIDE) / max(len(columns), 1), 1.0)
         told = across >= LEAST
         entries = legend(state.look.theme)
-        lines = flow([len(words) for _, _, words in entries], width - 2 * SIDE)
+        lines = flow([words for _, _, words in entries], width - 2 * SIDE)
         foot = 36 + 17 * (lines[-1][0] + 1)
         room = max(height - HEAD - foot, ROW)
         count = max(min(int(room / ROW), len(found.rows)), 1)
@@ -110,8 +115,7 @@ class Stability(Drawn):
             y = top - j * down
             name, _, chosen = row.partition(" ")
             words(name, SIDE, y - down / 2 + 6 * bool(chosen), anchor=(0, 0.5), points=11.5)
-            fits = int((labels - SIDE) / 4.7)
-            words(chosen[:fits], SIDE, y - down / 2 - 7, "muted", (0, 0.5), 9.5)
+            words(cut(chosen, labels - SIDE, 9.5), SIDE, y - down / 2 - 7, "muted", (0, 0.5), 9.5)
             for i, column in enumerate(columns):
                 cells = [found.cells.get((row, column, form)) for form in FORMS]
                 cells = [c for c in cells if c]
@@ -125,7 +129,7 @@ class Stability(Drawn):
                         hatches.append(area)
                     middle = ((area[0] + area[2]) / 2, (area[1] + area[3]) / 2)
                     texts.append((summary(cell, across > 41), middle, contrast(color)))
-                    draw.link(area, tip(cell, found, state), shown_at(state, cell)[0])
+                    draw.link(area, tip(cell, state), leading(cell, type(state.model)))
         for area in hatches:
             for start, end in diagonals(area, 7 * scale):
                 draw.stroke([start, end], COLORS[state.look.theme]["hatch"], 0.8)
@@ -139,7 +143,7 @@ class Stability(Drawn):
                 for start, end in diagonals(area, 7 * scale):
                     draw.stroke([start, end], COLORS[state.look.theme]["hatch"], 0.8)
             words(text, SIDE + x + 16, y, contrast(color), points=9.5)
-            words(meaning, SIDE + x + 37, y, "muted", (0, 0.5), 10.5)
+            words(meaning, SIDE + x + 37, y, "muted", (0, 0.5), SMALL)
         note = f"{len(found.broken)} of ours fail" if found.broken else "all of ours keep their promise"
         if count < len(found.rows):
             note += f"; rows {first + 1} to {first + count} of {len(found.rows)}"
@@ -154,11 +158,11 @@ def legend(theme):
     return entries + [(text, colors[name], meaning) for name, (text, meaning) in WORDS.items()]
 
 
-def flow(letters, width):
-    """(line, x) of entries of some letters each, one after the other in lines."""
+def flow(meanings, width):
+    """(line, x) of entries of the legend, one after the other in lines."""
     line, x, places = 0, 0.0, []
-    for count in letters:
-        extent = 37 + count * LETTER + 12
+    for words in meanings:
+        extent = 37 + width_of(words, SMALL) + 12
         if x and x + extent > width:
             line, x = line + 1, 0.0
         places.append((line, x))
@@ -218,7 +222,7 @@ def diagonals(box, step):
     return lines
 
 
-def tip(cell, found, state):
+def tip(cell, state):
     """What a cell has to say, line by line."""
     lines = [f"{cell.row}, {FORM_WORDS[cell.form]}: {REGIMES[cell.column].doc}"]
     wrong = {"NaN": cell.nan, "infinite": cell.infinite, "negative": cell.negative}
@@ -234,7 +238,7 @@ def tip(cell, found, state):
     if cell.over or cell.under:
         lines.append(f"{100 * cell.over:.2g} % too large for the format, {100 * cell.under:.2g} % too small")
     lines += described(cell)
-    lines += shown_at(state, cell)[1] or ["click: to this point, with these formulas on the sphere"]
+    lines += held(state, cell)[2] or ["click: to this point, with these formulas on the sphere"]
     return "\n".join(lines)
 
 
@@ -253,8 +257,10 @@ def described(cell):
     return [f"at {'; '.join(parts)}:", f"float32 {single}", f"float64 {exact}"]
 
 
-def shown_at(state, cell):
-    """The state with a cell's point in it, its formulas on the sphere; and in words what of it lies beyond what can be shown."""
+def held(state, cell):
+    """Of a cell's point what a state can hold: parameters by name, theta_o, phi_o and the light's theta in degrees, None where
+    the point has no directions; and in words what lies beyond.
+    """
     at, beyond = cell.at.arguments, []
 
     def within(name, value, declaration):
@@ -270,19 +276,30 @@ def shown_at(state, cell):
     params = declared(state.model, Param)
     values = {name: within(name, at[name], p) for name, p in params.items() if name in at}
     values = {n: v if isinstance(v, tuple) or params[n].size == 1 else (v,) * params[n].size for n, v in values.items()}
-    state = state.with_model(replace(state.model, **cell.choices, **values))
-    state = state.with_view("sphere", formulas=cell.form)
     wo, wi = directions_of(at)
     if wo is None:
-        return state, beyond
+        return values, None, beyond
     theta, phi = (float(np.degrees(a)) for a in angles(wo))
-    limits = declared(state.directions)
-    viewer = replace(state.directions, theta_o=within("theta_o", theta, limits["theta_o"]), phi_o=phi)
     between = float(np.degrees(2 * np.arctan2(np.linalg.norm(wo - wi), np.linalg.norm(wo + wi))))
-    light = replace(
-        state.light, theta=between, irradiance=state.light.irradiance or declared(state.light)["irradiance"].default
-    )
-    return replace(state, directions=viewer, light=light), beyond
+    return values, (within("theta_o", theta, declared(state.directions)["theta_o"]), phi, between), beyond
+
+
+def shown_at(state, cell):
+    """The state with a cell's point in it, its formulas on the sphere; and in words what of it lies beyond what can be shown."""
+    values, directions, beyond = held(state, cell)
+    state = state.with_model(replace(state.model, **cell.choices, **values))
+    state = state.with_view("sphere", formulas=cell.form)
+    if directions is None:
+        return state, beyond
+    theta, phi, between = directions
+    viewer = replace(state.directions, theta_o=theta, phi_o=phi)
+    irradiance = state.light.irradiance or declared(state.light)["irradiance"].default
+    return replace(state, directions=viewer, light=replace(state.light, theta=between, irradiance=irradiance)), beyond
+
+
+def leading(cell, cls):
+    """A function that leads a state to a cell's point, if it shows a material of that class."""
+    return lambda state: shown_at(state, cell)[0] if type(state.model) is cls else state
 
 
 def directions_of(arguments):

@@ -12,9 +12,9 @@ from ..model import Invalid
 
 RAYS = 96
 NODES = 49
-WALKS = 40_000  # estimates of a pass: some 20 ms on a software renderer
-PASSES = 16
-LONGEST = 512
+WALKS = 13_000  # estimates of a pass: 3 to 10 ms on a software renderer
+PASSES = 48
+LONGEST = 1536
 NOISE = 2e-3  # over the peak: less is thinner than a line
 EDGE = 1 - 1e-5  # the last node, just above the horizon: on it f is 0 and its limit could not be drawn
 

@@ -2,8 +2,7 @@
 #include "models/{model}.glsl"
 #include "views/seeding_{seeding}.glsl"
 
-uniform int walks;  // of a stochastic f, whose mean is taken
+uniform uint pass;
 
 #include "views/hemisphere_wi_{of_wi}.glsl"
-#include "views/lobe_{radius}.glsl"
 #include "views/hemisphere.glsl"

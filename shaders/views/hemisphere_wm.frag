@@ -4,5 +4,4 @@
 uniform vec2 alpha;
 
 #include "views/hemisphere_wm_{of_wm}.glsl"
-#include "views/lobe_{radius}.glsl"
 #include "views/hemisphere.glsl"
