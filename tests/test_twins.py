@@ -316,6 +316,8 @@ FLOORS = {
     "fresnel_f82.F": lambda c, eta, k: 8 * 6e-8 * schlick.F_schlick(c[:, None], fresnel.F0(eta, k)),
     # eta cos_t = t is the root of what is known to 2.4e-7.
     "refraction.refracted": lambda w, wm, eta: refraction_floor(dot(w, wm), eta),
+    # A polynomial that changes its sign, of terms that add up to 7.9e-3 at most, each known to four roundings.
+    "lambert_sphere.excess": lambda mu: 4 * 6e-8 * 7.9e-3,
     # Blacks are differences of numbers near 0.1, and a display value below 1e-6 is black on any screen.
     "tonemap_aces.tonemap": lambda color: 1e-6,
     "tonemap_agx.tonemap": lambda color: 1e-6,

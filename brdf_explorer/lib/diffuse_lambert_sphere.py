@@ -3,13 +3,13 @@ BRDF for Materials with Spherical Lambertian Scatterers": one scattering exactly
 function's first three Legendre terms. The albedo is the one that his Eq. 46 maps to c, nearly the body's in even light.
 
 The tables err by 3.9e-5 of f at most against the exact form (20000 pairs, cosines down to 1e-4). What its three terms leave out
-is lost in the noise, 1e-3 to 2e-3 of f, of walks among spheres. The albedo of white spheres is 1 within 1.2e-4, at most 1.00008,
-since only the first scattering is exact. Eq. 27 is a Fourier coefficient and counts twice: read without the 2 it errs by up to
-20 % of f.
+is lost in the noise, 1e-3 to 2e-3 of f, of walks among spheres. White spheres of them would reflect 1 within 1.2e-4, since only
+the first scattering is exact: `excess` takes that out, times c (1 - s), and 1e-5 is left. Eq. 27 is a Fourier coefficient and
+counts twice: read without the 2 it errs by up to 20 % of f.
 """
 
-from .common import PI, dot, split
-from .lambert_sphere import H0_slope, H1_slope, H2_slope, polynomial
+from .common import INV_PI, PI, dot, split
+from .lambert_sphere import H0_slope, H1_slope, H2_slope, excess, polynomial
 from .spheres import phase, sphere_c, sphere_s
 
 
@@ -41,4 +41,5 @@ def diffuse_f(wo, wi, albedo, sigma, r):
     second = 15 / 128 * (d_o * (1 + d_i) + d_i)
     sines = (dot(wo[..., :2], wo[..., :2]) * dot(wi[..., :2], wi[..., :2]))[..., None]
     total = total + 2 * turn * first + 2 * (2 * turn * turn - sines) * second
-    return c * (phase(wo, wi)[..., None] + total / (4 * PI)) / (o + i)
+    several = (phase(wo, wi)[..., None] + total / (4 * PI)) / (o + i)
+    return c * (several - INV_PI * (1 - s) * (excess(o) + excess(i)))

@@ -89,6 +89,12 @@ def H2_slope(mu, s):
     return 15 / 256 * (1 - m) ** 2 * _log_slope(mu) + _series(158, 4, 7, mu, s)
 
 
+def excess(mu):
+    """What white spheres of three terms reflect beyond 1 is excess(o) + twice the integral of excess(i) i di, within 4e-6."""
+    x = np.sqrt(mu)
+    return -1.40264851e-6 + x * (-3.63421859e-4 + x * (-6.07226121e-4 + x * (3.88513446e-3 - x * 3.03587701e-3)))
+
+
 def polynomial(first, rows, s):
     """A coefficient of the polynomials beside H, less that of c = 0, over c: s (..., 3)."""
     return np.polynomial.chebyshev.chebval(2 * s - 1, TABLE[first : first + rows])

@@ -27,10 +27,8 @@ class Diffuse(Model):
     )
 
     def exceptions(self):
-        if (
-            self.diffuse == "lambert_sphere"
-        ):  # white spheres gain 8e-5: of their phase function only the first scattering is exact
-            return {"energy": 1.0001}
+        if self.diffuse == "lambert_sphere":  # white spheres' albedo is 1 within 1e-5, by tables
+            return {"energy": 1 + 1e-5}
         if (
             self.diffuse == "lambert_sphere_fast"
         ):  # its fit gains up to 30 %, at grazing angles, from an albedo of 0.765 on

@@ -1,4 +1,4 @@
-"""Prints the tables of lambert_sphere.glsl and of its twin, from the exact solution: python shaders/lib/derive_lambert_sphere.py
+"""Prints the numbers of lambert_sphere.glsl and of its twin, from the exact solution: python shaders/lib/derive_lambert_sphere.py
 
 H = 1 + c mu (Psi / c log((1 + mu) / mu) + B): the logarithm is that of the first order in c; what is left, B, is smooth in
 s = sqrt(1 - c) and nearly so in sqrt(mu). Chebyshev series in both: in s by interpolation, in sqrt(mu) by least squares weighted
@@ -10,7 +10,9 @@ import textwrap
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
-from brdf_explorer.measure.half_space import H, coefficients, psi
+from brdf_explorer.lib.lambert_sphere import excess
+from brdf_explorer.measure.grid import direction
+from brdf_explorer.measure.half_space import H, albedo, coefficients, psi
 
 ROWS, POINTS = 16, 40
 SIZES = {0: (11, 10), 1: (6, 8), 2: (4, 7)}
@@ -40,6 +42,15 @@ def tables():
     return made
 
 
+def excess_polynomial(terms=5):
+    """Coefficients in sqrt(mu) of `excess`: what is left of it, beside what `albedo` has taken out already."""
+    root = points(24)
+    left = [albedo(direction(np.arccos(x * x), 0.0), 0.0, 64) - 1 for x in root]
+    powers = np.polynomial.polynomial.polyvander(root, terms - 1) + 4 / (np.arange(terms) + 4)
+    taken = np.linalg.lstsq(np.vander(root, terms, increasing=True), excess(root**2))[0]
+    return taken + np.linalg.lstsq(powers, left)[0]
+
+
 def text(start, end, comment):
     lines, first = [], 0
     for what, table in tables():
@@ -54,3 +65,4 @@ def text(start, end, comment):
 if __name__ == "__main__":
     print(text("const float TABLE[{0}] = float[{0}](", ");", "//"))
     print(text("TABLE = np.array([", "])", "#"))
+    print("excess:", excess_polynomial())

@@ -2,8 +2,8 @@
 // BRDF for Materials with Spherical Lambertian Scatterers": one scattering exactly, further ones by the modes 0, 1, 2 of the
 // phase function's first three Legendre terms. The albedo is the one that his Eq. 46 maps to c, nearly the body's in even light.
 // The tables err by 3.9e-5 of f at most against the exact form (20000 pairs, cosines down to 1e-4). What its three
-// terms leave out is lost in the noise, 1e-3 to 2e-3 of f, of walks among spheres. The albedo of white spheres is 1 within 1.2e-4,
-// at most 1.00008, since only the first scattering is exact.
+// terms leave out is lost in the noise, 1e-3 to 2e-3 of f, of walks among spheres. White spheres of them would reflect 1 within
+// 1.2e-4, since only the first scattering is exact: `excess` takes that out, times c (1 - s), and 1e-5 is left.
 // Eq. 27 is a Fourier coefficient and counts twice: read without the 2 it errs by up to 20 % of f.
 #include "lib/lambert_sphere.glsl"
 #include "lib/spheres.glsl"
@@ -39,5 +39,5 @@ vec3 diffuse_f(vec3 wo, vec3 wi, vec3 albedo, float sigma, float r) {
   d_i = c * i * H2_slope(i, s);
   vec3 second = 15.0 / 128.0 * (d_o * (1.0 + d_i) + d_i);
   sum += 2.0 * turn * first + 2.0 * (2.0 * turn * turn - dot(wo.xy, wo.xy) * dot(wi.xy, wi.xy)) * second;
-  return c * (phase(wo, wi) + sum / (4.0 * PI)) / (o + i);
+  return c * ((phase(wo, wi) + sum / (4.0 * PI)) / (o + i) - INV_PI * (1.0 - s) * (excess(o) + excess(i)));
 }
