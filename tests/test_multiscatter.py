@@ -1,10 +1,15 @@
 """The walk over the microsurface: energy, known answers by quadrature, and that both twins walk alike."""
 
+from dataclasses import replace
+from functools import partial
+from itertools import product
+
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from brdf_explorer.lib import slot
-from brdf_explorer.lib.common import PI, dot, normalize, vec
+from brdf_explorer.lib.common import PI, dot, normalize, quotient, vec
 from brdf_explorer.lib.random import Draws, pcg3d, random_states, seeded
 from brdf_explorer.lib.walk import depth_below, flight, meets, passage
 from brdf_explorer.measure.grid import direction
@@ -37,26 +42,59 @@ def dense(model, wo, wi):
     return n ** ((wo[..., 2:] > 0) * 2.0 - (wi[..., 2:] > 0) * 2.0)
 
 
-def energy(gpu, model, wo, error, seed=1, n=100_000):
-    """The share of the energy along wo that is scattered: a Mean, of as many samples as make its error at most that."""
-    rng, running = np.random.default_rng(seed), Running()
+def energy(evaluator, model, wo, error, seed=1, n=100_000):
+    """The share of the energy along wo that is scattered: a Mean, of as many samples as make its error at most that.
+
+    evaluator(model) is it or its Shader. Half of the directions are drawn by the sampler of facets three times as rough: where
+    its own draws few, in skirts of lobes, a walk that finds sharp facets by chance weighs up to 1e4 times as much as the mean.
+    """
+    rng, running, of = np.random.default_rng(seed), Running(), evaluator(model)
+    rougher = tuple(np.minimum(3 * np.array(model.alpha), 1.0))
+    lobes = [evaluator(replace(model, alpha=a, lowest=1, orders=1)) for a in dict.fromkeys([model.alpha, rougher])]
     while running.count < 2 * n or np.any(running.mean().error > error):
-        wi, weight = gpu.sample_f(model, wo, rng.integers(0, 2**24, (n, 2)) * 2.0**-24)
-        running.add(weight[:, :1] * dense(model, wo, wi))
+        u = rng.integers(0, 2**24, (len(lobes), n // len(lobes), 2)) * 2.0**-24
+        with np.errstate(under="ignore"):
+            wi = np.concatenate([lobe.sample_f(wo, points)[0] for lobe, points in zip(lobes, u, strict=True)])
+            density = np.mean([lobe.pdf(wo, wi) for lobe in lobes], axis=0)
+            weight = of.f(wo, wi)[:, :1] * np.abs(wi[:, 2:]) * dense(model, wo, wi)
+            running.add(quotient(weight, density[:, None]))
     return running.mean()
 
 
 # --- energy ----------------------------------------------------------------------------------------------------------
 
+FURNACES = [*product((0.1, 0.3, 1.0), (0.0, 60.0, 85.0)), ((0.1, 1.0), 60.0)]
+
 
 @pytest.mark.parametrize("ndf", NDFS)
 @pytest.mark.parametrize("facets", WHITE)
 def test_white_furnace(gpu, facets, ndf):
-    """Where facets lose nothing the surface loses nothing: to 3.5 standard errors, as 18 are tested, of at most 1e-3 or 2e-3."""
-    for alpha, theta, error in [(0.1, 0.0, 1e-3), (0.1, 85.0, 1e-3), (1.0, 45.0, 2e-3)]:
-        model = Multiscatter(alpha=alpha, ndf=ndf, **WHITE[facets])
-        found = energy(gpu, model, sees(theta), error)
-        assert np.abs(found.value[0] - 1) < 3.5 * found.error[0], (model, theta, found)
+    """Where facets lose nothing the surface loses nothing: within 3 standard errors of at most 1e-3.
+
+    Of the 60 numbers of all facets 0.16 would be beyond 3; the random numbers were chosen once. That the errors are neither too
+    small nor too large: the mean of 10 squares is outside of these quantiles by a chance of 0.002.
+    """
+    off = []
+    with seeded(1):
+        for alpha, theta in FURNACES:
+            model = Multiscatter(alpha=alpha, ndf=ndf, **WHITE[facets])
+            found = energy(partial(Shader, gpu), model, sees(theta), 1e-3)
+            off.append(((found.value - 1) / found.error)[0])
+    print(f"largest {np.abs(off).max():.2f}, root mean square {np.sqrt(np.mean(np.square(off))):.2f}")
+    low, high = chi2.ppf([0.001, 0.999], len(off)) / len(off)
+    assert np.abs(off).max() <= 3 and low < np.mean(np.square(off)) < high, dict(zip(FURNACES, off, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("facets", "alpha", "theta"), [("conductor", 0.1, 0.0), ("dielectric", 0.1, 0.0), ("diffuse", 0.3, 85.0)]
+)
+@pytest.mark.parametrize("ndf", NDFS)
+def test_white_furnace_in_float64(facets, alpha, theta, ndf):
+    """As that of the shaders, where few walks are enough."""
+    model = Multiscatter(alpha=alpha, ndf=ndf, **WHITE[facets])
+    with seeded(2):
+        found = energy(lambda model: model, model, sees(theta), 1e-3, n=20_000)
+    assert np.abs(found.value[0] - 1) <= 3 * found.error[0], found
 
 
 @pytest.mark.parametrize("facets", WHITE)
@@ -65,7 +103,7 @@ def test_a_walk_leaves_before_its_last_order(gpu, facets):
     energies = []
     for first in (17, 25):
         model = Multiscatter(alpha=1.0, lowest=first, orders=8, **WHITE[facets])
-        energies.append(energy(gpu, model, sees(0.0), np.inf).value[0])
+        energies.append(energy(partial(Shader, gpu), model, sees(0.0), np.inf).value[0])
     assert energies[0] < 1e-3 and energies[1] < 0.15 * energies[0] + 1e-9
     assert MOST == 64 and 0.15 ** ((MOST - 32) / 8) * energies[1] < 1e-7
 
