@@ -17,6 +17,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from brdf_explorer.model import Choice, declared
+from brdf_explorer.models import MODELS
+
 ROOT = Path(__file__).resolve().parent.parent
 SIZE = (1280, 800)
 SMALL = (960, 530)  # twice as large it still fits the screen that the null platform has
@@ -93,6 +96,24 @@ def reads(model):
     from brdf_explorer.ui.inspector import matters
 
     return matters(type(model), tuple(model.choices().items()))
+
+
+@act
+def every_preset_of_a_material_opens(user):
+    from brdf_explorer.model import Invalid
+    from brdf_explorer.state import presets
+    from brdf_explorer.ui.canvas import Canvas
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Canvas, "panel", lambda canvas, gpu, state, *_: state)  # what views draw is tested elsewhere
+        for name, path in presets().items():
+            try:
+                user.window.state = user.window.preset(name, False)
+            except Invalid as error:
+                raise AssertionError(name) from error
+            user.yield_(1)
+            if path.parent.name == "materials":
+                assert reads(user.state.model) <= set(vars(user.state.model)) and not user.window.notice, name
 
 
 @act
@@ -476,6 +497,24 @@ def test_user(played, name):
     outcomes = json.loads(path.read_text()) if path.exists() else {}
     assert name in outcomes, f"not reached\n{log}"
     assert not outcomes[name], f"{outcomes[name]}\n{log}"
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_every_parameter_matters_by_some_choice(name):
+    model, found = MODELS[name](), set()
+    for choice, declaration in declared(model, Choice).items():
+        tried = [replace(model, **{choice: option}) for option in declaration.options]
+        found |= set().union(*map(reads, tried))
+        model = max(tried, key=lambda m: len(reads(m)))  # the next choice may matter to some options of this one
+    assert found == set(declared(model))
+
+
+def test_parameters_of_other_facets_do_not_matter():
+    of = {"conductor": {"eta", "k", "fresnel"}, "dielectric": {"eta_below"}, "diffuse": {"albedo"}}
+    for facets, own in of.items():
+        others = set().union(*of.values()) - own
+        found = reads(MODELS["multiscatter"](facets=facets))
+        assert found >= own | {"alpha", "ndf", "lowest", "orders"} and not found & others, facets
 
 
 def test_scale(played):
