@@ -165,6 +165,25 @@ def drags_on_pictures_move_light_camera_and_viewer(user):
 
 
 @act
+def every_view_has_a_tab_and_comes_to_the_front_from_the_menu(user):
+    from imgui_bundle import imgui
+
+    from brdf_explorer.ui.canvas import Canvas
+    from brdf_explorer.ui.window import FRONT
+    from brdf_explorer.views import VIEWS
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Canvas, "panel", lambda canvas, gpu, state, *_: state)  # what views draw is tested elsewhere
+        for name in (*VIEWS, *FRONT):
+            user.item("views")
+            user.item(f"//$FOCUSED/{VIEWS[name].title}")
+            bar = imgui.internal.find_window_by_name(VIEWS[name].title).dock_node.tab_bar
+            assert bar.width_all_tabs_ideal <= bar.bar_rect.get_width(), "tabs are hidden"
+            assert name in user.window.front
+    assert user.window.front == FRONT
+
+
+@act
 def options_of_a_view_change_the_view_alone(user):
     user.ctx.window_focus("//Sphere")
     start = user.state
@@ -377,9 +396,7 @@ class User:
     def pictures(self):
         """The finished pictures by view, uint8 (H, W, 4)."""
         self.yield_()
-        for _ in range(400):
-            if not any(canvas.busy for canvas in self.window.canvases.values()):
-                break
+        while any(canvas.busy for canvas in self.window.canvases.values()):
             self.yield_(1)
         return self.read("pictures")
 
@@ -432,11 +449,11 @@ def play(folder, what):
     glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
     glfw.init()
     glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
-    start = load("gold", load("studio")).with_view("sphere", samples=128) if what == "opened" else State()
+    start = load("gold", load("studio")).with_view("sphere", samples=48) if what == "opened" else State()
     window = Window(start)
     user = User(window, folder)
     scale = 2.0 if what == "doubled" else 1.0
-    parameters = window.parameters(SIZE if what == "acts" else tuple(int(n * scale) for n in SMALL))
+    parameters = window.parameters(SIZE if what in ("acts", "opened") else tuple(int(n * scale) for n in SMALL))
     geometry = parameters.app_window_params.window_geometry
     geometry.window_size_measure_mode = hello_imgui.WindowSizeMeasureMode.screen_coords  # its surface is never resized
     parameters.ini_disable = True
