@@ -6,6 +6,7 @@ import re
 import signal
 import subprocess
 import sys
+from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -181,7 +182,7 @@ def test_eval_prints_f_pdf_and_albedo(fine):
 
 @pytest.mark.parametrize("suffix", [".csv", ".npz", ".exr"])
 def test_table_is_written(fine, suffix):
-    out = fine("table", "gold", "--theta-o", "60", "--rays", "8", "--nodes", "5", "-o", f"x{suffix}")
+    out = fine("table", "gold", "--theta-o", "60", "--rays", "8", "--steps", "5", "-o", f"x{suffix}")
     assert "8 x 5 directions, theta_o = 60 deg" in out
     assert load(f"x{suffix}").directions.theta_o == 60
 
@@ -322,6 +323,15 @@ def test_each_flag_sets_its_parameter(fine, name, view):
             assert flag.value == wanted[key]
 
 
+@pytest.mark.parametrize("name", main.commands)
+def test_no_flag_of_a_parameter_hides_an_option(name):
+    command = main.commands[name]
+    own = {word for option in command.params for word in option.opts} | {"-h", "--help"}
+    for model, view in product(MODELS.values(), VIEWS):
+        sections = [view if section == "view" else section for section in getattr(command, "sections", ())]
+        assert not own & set(flags_of(State((Material("x", model()),)), sections))
+
+
 def test_flags_stand_anywhere_and_in_all_forms(fine):
     size = ("--size", "9x9")
     for i, args in enumerate(
@@ -419,7 +429,7 @@ def test_words_are_split_from_the_arguments():
         (("eval", "gold", "--wo", "40,0", "--wi", "0,1e9"), "is no direction"),
         (("table", "gold", "-o", "x.png"), "there are: .csv, .npz, .exr"),
         (("table", "gold", "--rays", "7", "-o", "x.csv"), "rays = 7"),
-        (("table", "gold", "--nodes", "x", "-o", "x.csv"), "nodes"),
+        (("table", "gold", "--steps", "x", "-o", "x.csv"), "steps"),
         (("gallery", "gould"), "did you mean gold?"),
         (("gallery", "gold", "-o", "kept.toml"), "kept.toml: cannot make this folder"),
         (("gallery", "--scene", "none"), "none"),

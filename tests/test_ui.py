@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import traceback
 from dataclasses import replace
 from pathlib import Path
@@ -396,7 +397,7 @@ class User:
     def pictures(self):
         """The finished pictures by view, uint8 (H, W, 4)."""
         self.yield_()
-        while any(canvas.busy for canvas in self.window.canvases.values()):
+        while any(self.window.canvases[name].busy for name in self.window.front):
             self.yield_(1)
         return self.read("pictures")
 
@@ -514,6 +515,24 @@ def test_user(played, name):
     outcomes = json.loads(path.read_text()) if path.exists() else {}
     assert name in outcomes, f"not reached\n{log}"
     assert not outcomes[name], f"{outcomes[name]}\n{log}"
+
+
+def test_thumbnails_get_better_in_small_steps(gpu):
+    from brdf_explorer.ui.thumbnails import ROUGH, Thumbnails
+
+    thumbnails, names, took = Thumbnails(gpu), ("gold", "etched_glass", "white_plaster"), []
+    for idle in [False] * 40 + [True] * 20:
+        for name in names:
+            thumbnails.get(name, "light", 64)
+        assert thumbnails.busy
+        start = time.perf_counter()
+        thumbnails.advance(idle)
+        took.append(time.perf_counter() - start)
+        spent = [thumbnails.drawn[name, "light"].took for name in names]
+        assert idle or max(spent) < ROUGH + max(took)
+    assert np.median(took) < 0.02 and max(spent) > ROUGH
+    for name in names:
+        assert gpu.pixels(thumbnails.get(name, "light", 64))[32, 32].any()
 
 
 @pytest.mark.parametrize("name", MODELS)

@@ -85,9 +85,9 @@ def eval_(state, preset, wo, wi, shader, as_json):
 @preset_argument
 @scene_option
 @click.option("--rays", default=96, show_default=True, help="Rays about the mirror direction, an even number.")
-@click.option("--nodes", default=49, show_default=True, help="Directions a ray, an odd number.")
+@click.option("--steps", default=49, show_default=True, help="Directions a ray, an odd number.")
 @output_option
-def table(state, preset, rays, nodes, output):
+def table(state, preset, rays, steps, output):
     """Write a table of f over directions to the light.
 
     The directions are on a grid that follows the lobe; FILE is a .csv, .npz or .exr.
@@ -96,8 +96,8 @@ def table(state, preset, rays, nodes, output):
     from ..gpu import offscreen
 
     with offscreen() as gpu:
-        save_table(gpu, state, output, rays, nodes)
-    click.echo(f"{output}: {rays} x {nodes} directions, theta_o = {state.directions.theta_o:g} deg")
+        save_table(gpu, state, output, rays, steps)
+    click.echo(f"{output}: {rays} x {steps} directions, theta_o = {state.directions.theta_o:g} deg")
 
 
 @click.command(cls=Flagged)

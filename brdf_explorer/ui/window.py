@@ -225,14 +225,16 @@ class Window:
     def presets(self):
         if begin("Presets"):
             self.thumbnails = self.thumbnails or Thumbnails(self.gpu)
-            self.thumbnails.next_frame()
+            # before they are shown: a frame holds the textures that it shows
+            self.thumbnails.advance(not any(self.canvases[name].busy for name in self.front))
+            self.gpu.ctx.screen.use()
             self.state = inspector.browse(self.state, self.memory, self.preset, self.thumbnail)
+            if self.thumbnails.busy:
+                hello_imgui.request_refresh()
         imgui.end()
 
     def thumbnail(self, name, side):
         drawn = self.thumbnails.get(name, self.theme, int(side * imgui.get_io().display_framebuffer_scale.x))
-        if self.thumbnails.spent:
-            hello_imgui.request_refresh()
         return drawn and imgui.ImTextureRef(drawn.color_attachments[0].glo)
 
     def view(self, name):
