@@ -315,6 +315,18 @@ def test_tables_hold_f_pdf_and_weights(gpu, tmp_path, name):
     np.testing.assert_array_equal(channels["G"].ravel(), rows["f_g"].astype(np.float32))
 
 
+@pytest.mark.parametrize("view", ["factors", "facets", "microsurface"])
+def test_a_table_has_rows_or_a_reason(gpu, tmp_path, view):
+    for name, model in MODELS.items():
+        path = tmp_path / f"{name}.csv"
+        try:
+            save_view(gpu, State((Material(name, model()),)), view, path, (64, 64))
+        except Invalid as error:
+            assert f"{name} ({name}) " in str(error) and not path.exists()
+        else:
+            assert len(read_csv(path)) > 9
+
+
 @pytest.mark.parametrize(("rays", "steps"), [(3, 49), (0, 49), (10**6, 49), (96, 48), (96, 1), (96, 10**6 + 1)])
 def test_tables_that_cannot_be_are_refused(gpu, tmp_path, rays, steps):
     with pytest.raises(Invalid, match="rays|steps"):
