@@ -26,6 +26,7 @@ from brdf_explorer.model import Choice, Param, Text, declared
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Material, State, dumps, load, presets
 from brdf_explorer.views import VIEWS
+from brdf_explorer.views.drawing import Drawn
 
 SECTIONS = ("material", "directions", "light", "look")
 
@@ -321,6 +322,17 @@ def test_each_flag_sets_its_parameter(fine, name, view):
     for key, flag in flags_of(load("x.png"), [*SECTIONS, view]).items():
         if key in wanted:
             assert flag.value == wanted[key]
+
+
+def test_help_of_render_names_the_views_by_format():
+    words = " ".join(main.commands["render"].help.split())
+    assert f"of all views but {listed(v for v in VIEWS if not issubclass(VIEWS[v], Drawn))} also an .svg" in words
+    assert f"of {listed(v for v in VIEWS if hasattr(VIEWS[v], 'table_of'))} also a .csv" in words
+
+
+def listed(names):
+    *first, last = names
+    return f"{', '.join(first)} and {last}"
 
 
 @pytest.mark.parametrize("name", main.commands)

@@ -44,7 +44,8 @@ def open_(state, preset):
 def render(state, preset, view, size, scale, seconds, output):
     """Draw a view of PRESET into a file.
 
-    FILE is a .png or .exr picture; for polar also an .svg or .pdf drawing, or a .csv table of its curves.
+    FILE is a .png or .exr picture; of all views but sphere and lobe also an .svg or .pdf drawing; of polar, factors, facets,
+    sampling, readings and microsurface also a .csv table of their curves. The command table has f over all directions.
     """
     from ..export import save_view
     from ..gpu import offscreen
