@@ -20,7 +20,7 @@ from brdf_explorer import __version__
 from brdf_explorer.bench import Figure
 from brdf_explorer.cli import main
 from brdf_explorer.cli.flags import Flag, after, flags_of, number, split
-from brdf_explorer.measure import albedo
+from brdf_explorer.measure import albedo, shares
 from brdf_explorer.measure.grid import direction
 from brdf_explorer.model import Choice, Param, Text, declared
 from brdf_explorer.models import MODELS
@@ -159,6 +159,18 @@ def test_paths_are_those_of_where_the_user_is(fine, tmp_path):
         "deep/x.png",
     )
     assert load("deep/x.png").light.file == str(tmp_path / "deep" / "light.exr")
+
+
+@pytest.mark.parametrize("side", [40, 140])
+def test_eval_prints_what_glass_reflects_and_transmits(fine, side):
+    place = ("eval", "glass", "--wo", f"{side},30", "--wi", "20,200")
+    answer = json.loads(fine(*place, "--json"))
+    assert "albedo" not in answer
+    wo = direction(*np.radians([side, 30]))
+    np.testing.assert_allclose([answer["R"], answer["T"]], shares(load("glass").model, wo).value, atol=1e-6)
+    np.testing.assert_allclose(np.add(answer["R"], answer["T"]), 1, atol=1e-5)
+    text = fine(*place)
+    assert f"reflected    {answer['R'][0]:.17g}" in text and f"transmitted  {answer['T'][0]:.17g}" in text
 
 
 def test_eval_prints_f_pdf_and_albedo(fine):

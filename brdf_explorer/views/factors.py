@@ -62,7 +62,9 @@ class Factors(Drawn):
     def table_of(self, gpu, state):
         """The factors as Curves over theta in degrees. Raises Invalid for a material without."""
         if not hasattr(state.model, "factors"):
-            raise Invalid(f"{state.material.name} ({state.model.name()}) is no product of D, G and F: it has no factors")
+            raise Invalid(
+                f"{state.material.name} ({state.model.name()}) is no product of D, G and F: it has no factors"
+            )
         theta, values = self.curves(gpu, state)
         return Curves("theta_i [deg]", np.degrees(theta), values)
 
