@@ -20,6 +20,7 @@ from brdf_explorer import __version__
 from brdf_explorer.bench import Figure
 from brdf_explorer.cli import main
 from brdf_explorer.cli.flags import Flag, after, flags_of, number, split
+from brdf_explorer.gallery import save_gallery
 from brdf_explorer.measure import albedo, shares
 from brdf_explorer.measure.grid import direction
 from brdf_explorer.model import Choice, Param, Text, declared
@@ -261,6 +262,16 @@ def test_gallery_is_a_page_with_all_its_pictures(fine):
     for link in re.findall(r'href="([^"#]+)"', page):
         assert load(f"deep/g/{link}").light == load("studio").light
     assert "http" not in page
+
+
+def test_gallery_is_a_page_from_the_start(gpu, tmp_path):
+    states = [(name, load(name)) for name in ("gold", "chalk")]
+    for i, _, _ in save_gallery(gpu, states, tmp_path, (8, 8), 0.0):
+        page = (tmp_path / "index.html").read_text(encoding="utf-8")
+        shown = set(re.findall(r'src="([^"]+)"', page))
+        assert len(shown) == (i - 1) // len(GALLERY) * len(GALLERY)
+        assert all((tmp_path / name).exists() for name in shown) and "2 materials are drawn so far" in page
+    assert "so far" not in (tmp_path / "index.html").read_text(encoding="utf-8")
 
 
 def test_gallery_holds_each_material_preset(fine):

@@ -9,6 +9,8 @@ from .flags import Flagged, loaded
 from .options import Number, Size, ViewName, output_option, preset_argument, scene_option, seconds_option
 from .output import progress
 
+QUICK = 1.0  # most seconds for a picture of the gallery that is drawn in place of the window
+
 
 @click.command("open", cls=Flagged, sections=("material", "directions", "light", "look"), scene="studio")
 @click.argument("preset", required=False)
@@ -20,9 +22,10 @@ def open_(state, preset):
     """
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         click.echo(
-            "No display: neither DISPLAY nor WAYLAND_DISPLAY is set. Drawing a gallery into gallery/, which takes a minute or so."
+            "No display: neither DISPLAY nor WAYLAND_DISPLAY is set. Drawing a gallery: gallery/index.html, which grows for a"
+            " minute or so."
         )
-        return write_gallery("gallery", [(preset, state)] if preset else None)
+        return write_gallery("gallery", [(preset, state)] if preset else None, seconds=QUICK)
     from ..state import CARRIERS
     from ..ui import run
 
@@ -66,7 +69,7 @@ def render(state, preset, view, size, scale, seconds, output):
 def gallery(presets, scene, size, seconds, output):
     """Draw all materials in all views, and a page of them.
 
-    Or only the PRESETS that are given. The page is index.html.
+    Or only the PRESETS that are given. The page is index.html, which grows as pictures come.
     """
     return write_gallery(output, [(name, loaded(name, scene)) for name in presets] or None, scene, size, seconds)
 
