@@ -10,7 +10,7 @@ import numpy as np
 from ..lib.srgb import luminance
 from ..measure.grid import direction
 from ..measure.mirror_limit import SHARPNESS, differences, has_facets, mirrors, sharpened
-from ..model import choice, param
+from ..model import Invalid, choice, param
 from .axes import Axes, Axis
 from .diagram import number
 from .drawing import Drawing, Drawn, width_of, wrapped
@@ -58,9 +58,9 @@ class Facets(Drawn):
         return curve(model, np.inf, *at)[0], found | {np.inf: curve(model, np.inf, *at)[1]}
 
     def table_of(self, gpu, state):
-        """The curves as Curves over theta in degrees."""
+        """The curves as Curves over theta in degrees. Raises Invalid for a material without facets to sharpen."""
         if not has_facets(state.model):
-            return Curves("theta_i [deg]", np.zeros(0), {})
+            raise Invalid(f"{state.material.name} ({state.model.name()}) has no facets whose lobes could be sharpened")
         theta, found = self.curves(state)
         names = {k: "Torrance-Sparrow" if k == np.inf else f"kappa {k:g}" for k in found}
         return Curves("theta_i [deg]", np.degrees(theta), {names[k]: v for k, v in found.items()})

@@ -7,7 +7,7 @@ import numpy as np
 from ..lib.srgb import luminance
 from ..measure.grid import direction
 from ..measure.microsurface import projected_area
-from ..model import choice, param
+from ..model import Invalid, choice, param
 from .axes import Axes, Axis
 from .diagram import number
 from .drawing import Drawing, Drawn
@@ -60,7 +60,11 @@ class Factors(Drawn):
         return theta, values | {"F": luminance(values["F"]), "product": luminance(f)}
 
     def table_of(self, gpu, state):
-        """The factors as Curves over theta in degrees."""
+        """The factors as Curves over theta in degrees. Raises Invalid for a material without."""
+        if not hasattr(state.model, "factors"):
+            raise Invalid(
+                f"{state.material.name} ({state.model.name()}) is no product of D, G and F: it has no factors"
+            )
         theta, values = self.curves(gpu, state)
         return Curves("theta_i [deg]", np.degrees(theta), values)
 

@@ -130,7 +130,7 @@ class Map:
         target = self.gpu.target(self.name, self.size, 4, "f1")
         uniforms = {"side": float(self.side), "decades": float(view.decades), "paper": rgb(paper)} | self.place
         uniforms["share"] = 1 / most if most > 0 else 0.0
-        program = self.gpu.program(assemble("views/hemisphere_paint.frag", {"radius": view.scale}))
+        program = self.gpu.program(assemble("views/hemisphere_paint.frag", {"radius": view.colors}))
         self.gpu.draw(program, target, uniforms, {"values": self.values.color_attachments[0]})
         return target
 
@@ -142,7 +142,7 @@ class Hemisphere(Drawn):
     title = "Hemisphere"
 
     quantity: str = choice("pdf", QUANTITIES, "what the colours show: f and pdf over ωi, D and D_visible over ωm")
-    scale: str = choice("log", ("log", "linear"), "scale of the colours")
+    colors: str = choice("log", ("log", "linear"), "scale of the colours")
     decades: int = param(4, 1, 8, "decades that a logarithmic scale shows below the peak")
     samples: int = param(200, 0, 2000, "directions drawn by the model's sampler; over ωm, their half vectors")
 
@@ -348,7 +348,7 @@ class Hemisphere(Drawn):
         draw.over()
         self.names(draw, center, radius, wo, phi, up, state.model.index())
         if place.bar is not None:
-            logarithmic = self.scale == "log" and most > 0
+            logarithmic = self.colors == "log" and most > 0
             low = most / 10**self.decades if logarithmic else 0.0
             axis = Axis(low, most or 1.0, scale="log" if logarithmic else "linear")
             colorbar(maps[up, "disc"].gpu, draw, place.bar, axis)
