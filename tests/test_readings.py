@@ -267,3 +267,14 @@ def test_curves_are_written(gpu, tmp_path):
         save_view(gpu, state, "readings", tmp_path / f"x.{suffix}", (600, 400))
     rows = [line for line in (tmp_path / "x.csv").read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
     assert rows[0] == "θ [deg],printed,right" and len(rows) > 20
+
+
+def test_an_example_says_why_it_is_one():
+    reasons = {
+        ("frosted_glass", "fresnel"): "its facets let light through",
+        ("rough_gold", "stretching"): "its light meets several facets",
+        ("chalk", "mirrors"): "it has no distribution of facets",
+        ("copper", "slope"): "slopes of GGX have no rms",
+    }
+    for (preset, name), why in reasons.items():
+        assert found(name, load(preset).model, 0.7, 0.0, COARSE)[1] == why

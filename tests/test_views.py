@@ -19,6 +19,7 @@ from brdf_explorer.ui.gestures import linked, swipe
 from brdf_explorer.views import VIEWS
 from brdf_explorer.views.develop import develop
 from brdf_explorer.views.drawing import Drawing
+from brdf_explorer.views.lines import Stroke
 from brdf_explorer.views.picture import PALETTES, Picture, rgb
 from brdf_explorer.views.sphere import toward
 from brdf_explorer.views.table import table
@@ -250,6 +251,18 @@ def test_factors_say_that_d_cos_integrates_to_1_and_when_there_are_none(gpu):
 
     assert "∫ D cos θ dω = 1.0000000000" in words("gold")
     assert any("No factors to show" in w for w in words("chalk"))
+    with pytest.raises(Invalid, match="is no product of D, G and F"):
+        load("chalk").views["factors"].table_of(gpu, load("chalk"))
+
+
+@pytest.mark.parametrize("name", ["glass", "mirror_chrome", "gold", "frosted_glass"])
+def test_the_axis_of_factors_shows_each_curve(gpu, name):
+    state = load(name)
+    for drawing, *_ in state.views["factors"].drawings(gpu, state, (700, 450)):
+        lines = [item for _, item in drawing.items if isinstance(item, Stroke)]
+        for color in (*drawing.colors["curves"][:4], drawing.colors["ink"]):
+            heights = np.concatenate([line.points[:, 1] for line in lines if line.color == color])
+            assert heights.max() > 70, color  # over the foot of the axes, which is at 62
 
 
 def two(**models):

@@ -22,6 +22,7 @@ from . import half_space
 from .albedo import quadrature
 from .grid import direction
 from .microsurface import facets
+from .mirror_limit import without_facets
 
 MICROFACET = MODELS["microfacet"]
 EXAMPLES = {
@@ -92,16 +93,21 @@ def found(name, model, theta_o, phi_o, effort=FINE):
 # --- whether a question arises ---------------------------------------------------------------------------------------
 
 
-def has_facets(model):
-    return "" if isinstance(model, MICROFACET) else "no facets that are mirrors"
+def without_mirrors(model):
+    """Why facets of a model are not the lecture's: mirrors that light meets once."""
+    return "" if isinstance(model, MICROFACET) else without_facets(model) or "its facets are no mirrors"
 
 
 def is_stretched(model):
-    return has_facets(model) or ("alpha is the same along x and y" if model.alpha[0] == model.alpha[1] else "")
+    return without_mirrors(model) or ("alpha is the same along x and y" if model.alpha[0] == model.alpha[1] else "")
 
 
 def reflects_a_part(model):
-    return has_facets(model) or ("facets reflect all" if model.fresnel == "one" else "")
+    return without_mirrors(model) or ("facets reflect all" if model.fresnel == "one" else "")
+
+
+def is_of_gaussian_heights(model):
+    return without_mirrors(model) or ("" if model.ndf == "beckmann" else "slopes of GGX have no rms")
 
 
 def is_of_spheres(model):
@@ -109,7 +115,7 @@ def is_of_spheres(model):
 
 
 def is_dielectric(model):
-    return has_facets(model) or ("k is not 0" if max(model.k) > 0 else "")
+    return without_mirrors(model) or ("k is not 0" if max(model.k) > 0 else "")
 
 
 # --- what several readings need --------------------------------------------------------------------------------------
@@ -348,9 +354,9 @@ def slab(model, theta_o, phi_o, effort):
 
 READINGS = {
     "stretching": Reading(is_stretched, stretching),
-    "correlated": Reading(has_facets, correlated),
+    "correlated": Reading(without_mirrors, correlated),
     "fresnel": Reading(reflects_a_part, fresnel),
-    "slope": Reading(has_facets, slope),
+    "slope": Reading(is_of_gaussian_heights, slope),
     "mirrors": Reading(reflects_a_part, mirrors),
     "fourier": Reading(is_of_spheres, fourier),
     "slab": Reading(is_dielectric, slab),
