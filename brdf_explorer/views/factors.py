@@ -23,7 +23,7 @@ FACTORS = {  # name -> words of the legend, and what they are where there is lit
     "jacobian": ("1 / (4 cos θo cos θi)", "Jacobian"),
     "product": ("product = f  [1/sr]", "f [1/sr]"),
 }
-BELOW = 0.3  # of each curve's peak: where the axis ends at the latest
+BELOW = 0.3  # of each curve where f is largest, on each side of the surface: where the axis ends at the latest
 WIDE, NARROW = 158, 74  # points of a column of the legend
 
 
@@ -77,8 +77,12 @@ class Factors(Drawn):
         shown = {name: values[name] for name in FACTORS if getattr(self, name) == "on"}
         # the Jacobian grows without bound at the horizon, and does not decide the range
         top = 1.3 * max([1.0, *(float(v.max()) for name, v in shown.items() if name != "jacobian")])
-        peaks = [float(v.max()) for v in shown.values() if v.max() > 0]
-        low = min([top / 10**self.decades, *(BELOW * peak for peak in peaks)]) if self.axis == "log" else 0.0
+        low = 0.0
+        if self.axis == "log":
+            sides = (side for side in (theta < -np.pi / 2, theta >= -np.pi / 2) if side.any())
+            peaks = [np.argmax(np.where(side, values["product"], -1.0)) for side in sides]
+            known = (BELOW * float(v[at]) for v in shown.values() for at in peaks if v[at] > 0)
+            low = min([top / 10**self.decades, *known])
         y = Axis(low, top, "", self.axis)
         short = width < (52 + 3 * WIDE) * scale
         columns = max(int((width / scale - 52) // (NARROW if short else WIDE)), 1) if short else 3
