@@ -235,7 +235,7 @@ def test_page_says_what_is_printed_what_is_right_and_the_cost(gpu, name):
     state = State(directions=Directions(theta_o=60.0)).with_view("readings", reading=name)
     words = [label.text for label in page(gpu, state).labels]
     assert {*WORDS[name].printed, *WORDS[name].right, "as printed", "right"} <= set(words)
-    for cost in state.views["readings"].found(state)[0].costs:
+    for cost in found(*state.views["readings"].question(state))[0].costs:
         assert cost.name in words
     assert any(word.startswith("× ") for word in words)
 
