@@ -235,7 +235,7 @@ def test_page_says_what_is_printed_what_is_right_and_the_cost(gpu, name):
     state = State(directions=Directions(theta_o=60.0)).with_view("readings", reading=name)
     words = [label.text for label in page(gpu, state).labels]
     assert {*WORDS[name].printed, *WORDS[name].right, "as printed", "right"} <= set(words)
-    for cost in state.views["readings"].found(state)[0].costs:
+    for cost in found(*state.views["readings"].question(state))[0].costs:
         assert cost.name in words
     assert any(word.startswith("× ") for word in words)
 
@@ -267,3 +267,14 @@ def test_curves_are_written(gpu, tmp_path):
         save_view(gpu, state, "readings", tmp_path / f"x.{suffix}", (600, 400))
     rows = [line for line in (tmp_path / "x.csv").read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
     assert rows[0] == "θ [deg],printed,right" and len(rows) > 20
+
+
+def test_an_example_says_why_it_is_one():
+    reasons = {
+        ("frosted_glass", "fresnel"): "its facets let light through",
+        ("rough_gold", "stretching"): "its light meets several facets",
+        ("chalk", "mirrors"): "it has no distribution of facets",
+        ("copper", "slope"): "slopes of GGX have no rms",
+    }
+    for (preset, name), why in reasons.items():
+        assert found(name, load(preset).model, 0.7, 0.0, COARSE)[1] == why

@@ -22,7 +22,7 @@ from ..measure.microsurface import D_visible, facets, projected_area
 from ..model import choice, param
 from .axes import Axis, colorbar
 from .diagram import number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, nothing
 from .pace import Pace, chords, in_turn
 from .picture import rgb
 from .table import progressive
@@ -224,11 +224,8 @@ class Hemisphere(Drawn):
     def drawings(self, gpu, state, size, scale=1.0):
         model = state.model
         if self.over == "wm" and "ndf" not in model.choices():
-            draw = Drawing(size, scale, state.look.theme)
             words = f"No {self.quantity} to show:", f"{model.name()} has no distribution of normals"
-            for line, text in enumerate(words):
-                draw.text(text, (size[0] / 2, size[1] / 2 + (9 - 18 * line) * scale), "muted")
-            yield draw, "", True
+            yield nothing(size, scale, state.look.theme, *words), "", True
             return
         wo = direction(np.radians(state.directions.theta_o), np.radians(state.directions.phi_o))
         tables = progressive(gpu, model, state.directions, passes=PASSES) if self.estimated(model) else None
