@@ -322,7 +322,7 @@ def test_a_table_has_rows_or_a_reason(gpu, tmp_path, view):
         try:
             save_view(gpu, State((Material(name, model()),)), view, path, (64, 64))
         except Invalid as error:
-            assert f"{name} ({name}) " in str(error) and not path.exists()
+            assert name in str(error) and not path.exists()
         else:
             assert len(read_csv(path)) > 9
 
