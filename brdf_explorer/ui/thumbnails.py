@@ -9,7 +9,7 @@ from ..views.develop import develop
 
 SCENE = "studio"
 SAMPLES, NOISE = 2048, 0.02  # options of the sphere; etched glass takes most of them
-ROUGH = 0.05  # seconds after which a picture waits until nothing else is drawn
+ROUGH = 0.5  # seconds of its own after which a picture waits until nothing else is drawn
 BUDGET = 0.006  # seconds of a frame, and of a step
 END = object()
 
