@@ -1,11 +1,12 @@
 """The microsurface: rough ground with the material's slopes, which of it light and viewer reach, and what Smith says of it."""
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..glsl import assemble
-from ..measure.surface import BINS, G1, LAWS, P2, A, along, first_hit, lit, measured, patch, surface
+from ..measure.surface import BINS, G1, LAWS, P2, A, along, first_hit, lit, measured, measuring, patch, seeds, surface
 from ..model import Invalid, choice, declared, param
 from .axes import Axes, Axis
 from .diagram import arrow, nice_step, number
@@ -116,7 +117,13 @@ class Microsurface(Drawn):
             yield draw, "", True
             return
         boxes = self.layout(size, scale)
-        for cut, target, found, done in self.stages(gpu, ground, boxes, state.look.theme):
+        draw, note = None, ""
+        for stage in self.stages(gpu, ground, boxes, state.look.theme):
+            if stage is None:
+                if gpu.pace is not None:
+                    yield draw, note, False
+                continue
+            cut, target, found, done = stage
             draw = Drawing(size, scale, state.look.theme)
             say(draw, self.heading(ground, size[0] / scale), (12 * scale, size[1] - 15 * scale), "ink", (0.0, 0.5))
             if "surface" in boxes:
@@ -135,8 +142,10 @@ class Microsurface(Drawn):
             yield draw, note, done
 
     def stages(self, gpu, ground, boxes, theme):
-        """(Cut, its picture, Measured, done): few heights, then all of them, smooth edges, and one surface more each time."""
+        """(Cut, its picture, Measured, done): few heights, then all of them, smooth edges, and one surface more each time.
 
+        None is a step between two of these.
+        """
         left, bottom, right, top = boxes.get("surface", (0, 0, 1, 1))
         size = (max(round(right - left), 1), max(round(top - bottom), 1))
         targets = [gpu.target(f"microsurface.{n}", size, 4, *of) for n, of in TARGETS.items()]
@@ -144,16 +153,29 @@ class Microsurface(Drawn):
         def relief(cut, i=0, count=1):
             return self.relief(gpu, targets, boxes["surface"], cut, theme, i, count) if "surface" in boxes else None
 
+        surface(ground.kind, ground.seed)
+        yield None
         cut = ground.cut(self.extent, COARSE)
         yield cut, relief(cut), None, False
         cut = ground.cut(self.extent, FINE)
+        yield None
         target = relief(cut)
-        for i in range(PASSES if target else 0):
-            yield cut, target, None, False
-            relief(cut, i, PASSES)
+        yield None
+        passes = PASSES if target else 0
         most = SURFACES if {"slopes", "visibility"} & set(boxes) else 0
-        yield cut, target, None, most == 0
-        for count in range(1, most + 1):
+        yield cut, target, None, passes + most == 0
+        for i in range(passes):
+            relief(cut, i, PASSES)
+            yield None
+        if passes:
+            yield cut, target, None, most == 0
+        for count, seed in enumerate(seeds(ground.seed, most), 1):
+            one, start = measuring(ground.kind, seed), time.perf_counter()
+            while one.result is None:
+                one.step()
+                if gpu.pace is not None and time.perf_counter() - start >= gpu.pace:
+                    yield None
+                    start = time.perf_counter()
             yield cut, target, measured(ground.kind, ground.seed, count), count == most
 
     def table_of(self, gpu, state):
