@@ -286,14 +286,15 @@ class Microsurface(Drawn):
         x = (left + right) / 2 + unit * (np.arange(n) - (n - 1) / 2) * cut.pitch
         y = bottom + 30 * scale + unit * (z - z.min())
         line = np.stack([x, y], axis=-1)
-        sky = (left + 4 * scale, bottom, right - 4 * scale, top - 22 * scale)
         ground = cut.ground
 
         # the legend, with shares of the whole surface
         shares = cut.shares()
+        plain = shares[0] > 0.995
+        sky = (left + 4 * scale, bottom, right - 4 * scale, top - (36 if plain else 22) * scale)
         at = left + 12 * scale
         for (name, color), share in zip(CLASSES, shares, strict=True):
-            words = f"{name} {100 * share:.0f} %"
+            words = f"{name} {percent(share)}"
             extent = width_of(words, 12.0) * scale
             if at + extent < right:
                 say(draw, words, (at, top - 10 * scale), color, (0.0, 0.5))
@@ -327,6 +328,9 @@ class Microsurface(Drawn):
         if len(ground.pointers()) == 1:
             middle = np.array([(left + right) / 2, top - 30 * scale])
             say(draw, "the light is below the horizon", middle, "muted")
+        elif plain:
+            words = "nearly nothing is hidden: rougher ground or lower directions hide more"
+            say(draw, words, (left + 12 * scale, top - 26 * scale), "muted", (0.0, 0.5), 11.0)
         self.draw_reflection(draw, line, cut, sky)
         self.draw_bar(draw, (left + 12 * scale, bottom + 12 * scale), unit, right - left - 24 * scale)
 
@@ -422,6 +426,11 @@ class Cut:
         return [float(np.mean(s)) for s in (self.lit * self.seen, dark * self.seen, self.lit * hidden, dark * hidden)]
 
 
+def percent(share):
+    """A share in percent, also of what is rare."""
+    return f"{100 * share:.0f} %" if share >= 0.01 else f"{number(100 * share, 1)} %"
+
+
 def corners(share):
     """Shares (n, n - 1) of segments as those (n, n) of their corners."""
     padded = np.pad(share, ((0, 0), (1, 1)), mode="edge")
@@ -498,7 +507,11 @@ def draw_visibility(draw, box, ground, found):
     say(draw, "facing facets: G1", (axes.box[0], top - 14 * scale), "accent", (0.0, 0.5))
     say(draw, "area", (axes.box[2], top - 14 * scale), "blue", (1.0, 0.5))
     theta_o = np.degrees(ground.theta_o)
-    axes.line([theta_o, theta_o], [0.0, 1.0], "muted", 1.0)
+    corner = axes.place(0.0, 0.0) + np.array([8, 12]) * scale
+    legend = ("dots: rays over heights", "lines: Smith")
+    crossed = axes.place(theta_o, 0.0)[0] < corner[0] + (width_of(legend[0], 11.0) + 4) * scale
+    low = 38 * scale / (axes.box[3] - axes.box[1]) if crossed else 0.0  # from over the words on
+    axes.line([theta_o, theta_o], [min(low, 1.0), 1.0], "muted", 1.0)
     say(draw, "θo", axes.place(theta_o, 1.0) + [0, 9 * scale], "muted", size=11.0)
     draw.over()
     theta = np.radians(np.linspace(0.0, 90.0, 181))
@@ -511,9 +524,8 @@ def draw_visibility(draw, box, ground, found):
                 draw.dot(axes.place(at, m), color, 5.0)
                 if found.count > 1:
                     axes.line([at, at], [m - e, m + e], color, 1.0)
-    corner = axes.place(0.0, 0.0) + np.array([8, 12]) * scale
-    say(draw, "lines: Smith", corner + [0, 15 * scale], "muted", (0.0, 0.5), 11.0)
-    say(draw, "dots: rays over heights", corner, "muted", (0.0, 0.5), 11.0)
+    for i, line in enumerate(legend):
+        say(draw, line, corner + [0, 15 * i * scale], "muted", (0.0, 0.5), 11.0)
     for i, line in enumerate(words):
         at = (left + 14 * scale, bottom + (15 * (len(words) - i) - 6) * scale)
         draw.text(line, at, "ink", (0.0, 0.5), 11.5)
