@@ -23,6 +23,7 @@ from .albedo import quadrature
 from .grid import direction
 from .microsurface import facets
 from .mirror_limit import without_facets
+from .steps import Steps
 
 MICROFACET = MODELS["microfacet"]
 EXAMPLES = {
@@ -84,38 +85,20 @@ class Reading:
     find: Callable
 
 
-class Finding:
-    """The search for a Found, step by step.
+@lru_cache(maxsize=16)
+def finding(name, model, theta_o, phi_o, effort=FINE):
+    """The Steps to (Found, why it is of the example and not of this model, or ""), for a viewer's angles in radians."""
 
-    result   None until it is there
-    why      it is of the example and not of the model, or ""
-    """
+    def steps():
+        why = READINGS[name].applies(model)
+        return (yield from READINGS[name].find(EXAMPLES[name] if why else model, theta_o, phi_o, effort)), why
 
-    def __init__(self, name, model, theta_o, phi_o, effort):
-        reading = READINGS[name]
-        self.why = reading.applies(model)
-        self.steps = reading.find(EXAMPLES[name] if self.why else model, theta_o, phi_o, effort)
-        self.result = None
-
-    @np.errstate(under="ignore")  # in the tails of a density
-    def step(self):
-        try:
-            next(self.steps)
-        except StopIteration as end:
-            if end.value is None:  # one that an error ended before is over, too
-                raise RuntimeError("the search has ended with an error") from end
-            self.result = end.value
-
-
-finding = lru_cache(maxsize=16)(Finding)
+    return Steps(steps())
 
 
 def found(name, model, theta_o, phi_o, effort=FINE):
-    """(Found, why it is of the example and not of this model, or ""), for a viewer's angles in radians."""
-    one = finding(name, model, theta_o, phi_o, effort)
-    while one.result is None:
-        one.step()
-    return one.result, one.why
+    """What `finding` finds."""
+    return finding(name, model, theta_o, phi_o, effort).all()
 
 
 # --- whether a question arises ---------------------------------------------------------------------------------------

@@ -23,6 +23,7 @@ import numpy as np
 from ..lib import slot
 from ..lib.common import quotient, vec
 from ..lib.transcendental import erfcx_precise, exp_precise
+from .steps import Steps
 
 LAWS = {"gaussian": "beckmann", "ellipsoids": "ggx", "brushed": "beckmann"}
 """The distribution of normals of each surface."""
@@ -339,18 +340,33 @@ def profiles(kind, seed):
 
 
 @lru_cache(maxsize=128)
-def measured_once(kind, seed):
-    """(alpha, slopes, visible, lit) of one surface."""
-    heights, pitch, slopes = profiles(kind, seed)
-    rough = slopes[heights[:, :-1] > 0] if kind == "ellipsoids" else slopes
-    density = np.histogram(slopes, BINS)[0] / slopes.size / np.diff(BINS)
-    visible, lit = np.transpose([cast(heights, pitch, a) for a in A])
-    return slope_scale(LAWS[kind], rough), density, visible, lit
+def measuring(kind, seed):
+    """The Steps to (alpha, slopes, visible, lit) of one surface."""
+
+    def steps():
+        surface(kind, seed)
+        yield
+        heights, pitch, slopes = profiles(kind, seed)
+        yield
+        rough = slopes[heights[:, :-1] > 0] if kind == "ellipsoids" else slopes
+        density = np.histogram(slopes, BINS)[0] / slopes.size / np.diff(BINS)
+        shares = []
+        for a in A:
+            yield
+            shares.append(cast(heights, pitch, a))
+        return slope_scale(LAWS[kind], rough), density, *np.transpose(shares)
+
+    return Steps(steps())
+
+
+def seeds(seed, count):
+    """Of `count` surfaces: that of `seed`, and others."""
+    return [(seed, i) if i else seed for i in range(count)]
 
 
 def measured(kind, seed, count):
     """Measured of `count` surfaces of a kind: that of `seed` and others."""
-    found = [measured_once(kind, seed if i == 0 else (seed, i)) for i in range(count)]
+    found = [measuring(kind, one).all() for one in seeds(seed, count)]
     columns = []
     for values in zip(*found, strict=True):
         error = np.std(values, axis=0, ddof=1) / np.sqrt(count) if count > 1 else np.nan * np.asarray(values[0])

@@ -140,7 +140,7 @@ class Readings(Drawn):
                     yield draw, "", False
                     start = time.perf_counter()
             draw = Drawing(size, scale, state.look.theme)
-            self.page(draw, state, one.result, one.why)
+            self.page(draw, state, *one.result)
             yield draw, "", effort is FINE
             start = time.perf_counter()
 
