@@ -13,6 +13,7 @@ from .lib import slot
 from .lib.common import vec
 from .model import Choice, declared
 from .models import MODELS
+from .models.diffuse import r_of_sigma, sigma_of_r
 from .models.multiscatter import MOST
 
 HALF = float(np.finfo(np.float16).max)
@@ -25,6 +26,10 @@ def within(state):
 
 def exact(state):
     return 0.0
+
+
+def as_they_are(model, changes):
+    return {}
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,7 @@ class Ladder:
     measures  what a method is judged by: "f", its values; "numbers", how they are held; "samples", the spread of its weights;
               "picture", the sphere's
     applies   whether the question arises for a state
+    carried   carried(model, changes): what a method's own parameters become, so that they say what the model's say
     """
 
     name: str
@@ -62,6 +68,7 @@ class Ladder:
     measures: str
     methods: tuple[Method, ...]
     applies: Callable
+    carried: Callable = as_they_are
 
     def reference(self, state):
         """The most accurate method for a state: the last that is within its domain."""
@@ -74,7 +81,7 @@ class Ladder:
             return state.with_view(self.section, **changes)
         cls = MODELS[changes.pop("model", state.model.name())]
         kept = {name: getattr(state.model, name) for name in declared(cls) if name in declared(state.model)}
-        return state.with_model(cls(**kept | changes))
+        return state.with_model(cls(**kept | changes | self.carried(state.model, changes)))
 
     def current(self, state):
         """The method that a state uses, or None if it is none of these."""
@@ -87,7 +94,9 @@ class Ladder:
         return any(self.at(state, m).model.stochastic for m in self.methods)
 
 
-def of_choice(name, question, measures, options, applies=None, outside=None, own=None, choice=None):
+def of_choice(
+    name, question, measures, options, applies=None, outside=None, own=None, choice=None, carried=as_they_are
+):
     """The Ladder of a choice among a model's, named as it unless said, its options from the cheapest to the reference."""
     choice = choice or name
 
@@ -96,7 +105,7 @@ def of_choice(name, question, measures, options, applies=None, outside=None, own
 
     outside, own = outside or {}, own or {}
     methods = tuple(Method(o, {choice: o}, "", outside.get(o, within), own.get(o, exact)) for o in options)
-    return Ladder(name, question, "material", measures, methods, has)
+    return Ladder(name, question, "material", measures, methods, has, carried)
 
 
 def absorbs(state):
@@ -131,6 +140,14 @@ def surrounded(state):
 
 def not_of_ggx(state):
     return "visible normals of Beckmann have no caps: the same as visible" if state.model.ndf != "ggx" else ""
+
+
+def as_rough(model, changes):
+    """eon's r of sigma where a diffuse law comes to be eon, and back where it ceases to be."""
+    was, now = model.diffuse == "eon", changes["diffuse"] == "eon"
+    if was == now:
+        return {}
+    return {"r": r_of_sigma(model.sigma)} if now else {"sigma": sigma_of_r(model.r)}
 
 
 def loses(state):
@@ -192,9 +209,10 @@ LADDERS = {
         # "diffuse" has two truths: a rough surface is not a heap of grains, so each has its own question
         of_choice(
             "diffuse",
-            "Does the roughness of a diffuse surface show?",
+            "Does the roughness of a diffuse surface show? (r of eon is B/A of oren_nayar)",
             "f",
             ("lambert", "oren_nayar", "facets", "eon"),
+            carried=as_rough,
         ),
         of_choice(
             "spheres",

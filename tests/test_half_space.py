@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from brdf_explorer.glsl import SHADERS
+from brdf_explorer.lib import spheres
 from brdf_explorer.lib.diffuse_lambert_sphere_fast import grazing_albedo
 from brdf_explorer.lib.lambert_sphere import TABLE
 from brdf_explorer.lib.spheres import sphere_c, sphere_s
@@ -68,6 +69,38 @@ def test_energy(monkeypatch):
     monkeypatch.setattr(half_space, "phase", lambda wo, wi: np.polynomial.legendre.legval(np.sum(-wo * wi, -1), three))
     for cosine in (1.0, 0.7, 0.1, 0.01):
         assert half_space.albedo(direction(np.arccos(cosine), 0.0), 0.0, 48) == pytest.approx(1, abs=1e-6)
+
+
+def many_terms(s, mu, weight, most=16):
+    """Albedo (n,) along nodes mu (n,) by discrete ordinates: light in a half space is a sum of exp(-k depth) on these nodes."""
+    legendre = np.polynomial.legendre.Legendre.basis
+    root, turn = half_space.nodes(200)
+    x, dx = np.cos(np.pi * root), np.pi * turn * np.sin(np.pi * root)
+    p = spheres.phase(direction(np.pi * root, 0.0), np.array([0.0, 0.0, -1.0]))
+    ahead = behind = 0.0
+    for k in range(most + 1):
+        P = legendre(k)(mu)
+        term = (1 - s) * (1 + s) * np.pi * (2 * k + 1) * ((p * legendre(k)(x)) @ dx) * np.outer(P, P) * weight
+        ahead, behind = ahead + term, behind + (-1) ** k * term
+    A, B = (np.eye(len(mu)) - ahead) / mu[:, None], behind / mu[:, None]
+    k, mode = np.linalg.eig(np.block([[-A, B], [-B, A]]))
+    down, up = np.split(mode[:, k < 0], 2)
+    return (weight * mu) @ (up @ np.linalg.inv(down)) / (weight * mu)
+
+
+@pytest.mark.parametrize(
+    ("s", "three", "left"), [(1e-3, 1.2e-4, 2e-6), (0.1**0.5, 7.5e-5, 2e-5), (0.5**0.5, 1.5e-5, 7e-6)]
+)
+def test_three_terms_lose_as_their_header_says(s, three, left, monkeypatch):
+    """Against many terms, and what is left beside `excess`."""
+    root, turn = half_space.nodes(32)
+    mu = root**2
+    expected = many_terms(s, mu, 2 * root * turn)
+    at = np.searchsorted(mu, [0.01, 0.1, 0.3, 0.7, 0.99])
+    for most in (left, three):
+        found = [half_space.albedo(direction(np.arccos(mu[i]), 0.0), s, 32) for i in at]
+        assert 0.8 * most < np.max(np.abs(found - expected[at])) < most
+        monkeypatch.setattr(half_space, "excess", lambda mu: 0 * mu)
 
 
 def about(rng, n):

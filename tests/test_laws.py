@@ -1,6 +1,8 @@
 """The laws that `check` prints: materials keep them and broken ones do not; and the quadrature's error is what it says."""
 
 from dataclasses import dataclass
+from functools import partial
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -8,13 +10,14 @@ from oracles.cases import CASES, SLOW, case_label, corners, material
 from test_sampling import SAMPLERS
 
 from brdf_explorer.measure import albedo, albedo_with_error, laws
-from brdf_explorer.measure.albedo import integral
+from brdf_explorer.measure.albedo import integral, shares
 from brdf_explorer.measure.grid import direction
 from brdf_explorer.measure.laws import energy, finite, reciprocity
 from brdf_explorer.measure.microsurface import G1, projected_area
 from brdf_explorer.models import MODELS
 
-Microfacet, Diffuse = MODELS["microfacet"], MODELS["diffuse"]
+Microfacet, Diffuse, Nonspecular = (MODELS[name] for name in ("microfacet", "diffuse", "nonspecular"))
+measured = import_module("brdf_explorer.measure.laws")  # whose name in the package is a function's
 
 
 @pytest.mark.parametrize(("cls", "choices"), CASES, ids=case_label)
@@ -44,6 +47,17 @@ def test_all_laws_hold_for_both_twins(gpu, cls, choices):
     names = [law.name for law in found]
     assert len(set(names)) == len(names) >= 11
     assert all(law.note and np.isfinite(law.measured) for law in found)
+
+
+@pytest.mark.parametrize("facet", ["lambert", "lobe"])
+def test_laws_hold_for_both_twins_of_slow_models(gpu, facet, monkeypatch):
+    """All laws of the integral over facets, for one viewer, in small batches and by few nodes."""
+    for name in ("reciprocity", "finite", "twins"):
+        monkeypatch.setattr(measured, name, partial(getattr(measured, name), n=1000))
+    monkeypatch.setattr(measured, "THETAS", (70.0,))
+    monkeypatch.setattr(measured, "shares", lambda model, wo, **_: shares(model, wo, tolerance=1e-3, most=32))
+    found = list(laws(Nonspecular(facet=facet, nodes="8", albedo=1.0, fresnel="one"), gpu))
+    assert len(found) >= 13 and all(law.ok for law in found), found
 
 
 def test_laws_without_a_gpu_leave_the_glsl_out():

@@ -40,7 +40,7 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     size_o, size_i = length(o), length(i)
     o, i = o / size_o[:, None], i / size_i[:, None]
     off_oi, off_o, off_i = dot(o - i, o - i), dot(o - z, o - z), dot(i - z, i - z)
-    z_between, o_far = (off_oi >= np.maximum(off_o, off_i))[:, None], (off_o > off_i)[:, None]
+    z_between, o_far = (off_oi > 1.0001 * np.maximum(off_o, off_i))[:, None], (off_o > off_i)[:, None]
     p = np.where(z_between | o_far, o, i)
     q = np.where(z_between, i, z)
     k = np.where(z_between, z, np.where(o_far, i, o))
@@ -54,10 +54,14 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     corner = u_x / stretch / size_corner[:, None]
     k_corner = np.maximum(dot(k, corner), 0.0)
 
-    tilt = np.where(dot(t, t) > dot(both_ways, both_ways), quotient(dot(both_ways, t), dot(t, t)), 0.0)
+    obtuse = dot(t, t) > dot(both_ways, both_ways)
+    tilt = np.where(obtuse, quotient(dot(both_ways, t), dot(t, t)), 0.0)
     both_ways = both_ways - tilt[:, None] * t
     c = 0.5 * length(both_ways)
     h = both_ways / (2 * c)[:, None]
+    turned = np.where(
+        z_between & obtuse[:, None], t / np.sqrt(np.maximum(dot(t, t), 1.0))[:, None], side * np.cross(h, u_x)
+    )
     t = t - dot(t, h)[:, None] * h
     other = np.where(np.abs(h[:, :1]) < 0.7, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
     t = np.where(dot(t, t)[:, None] < 1e-12, other - dot(other, h)[:, None] * h, t)
@@ -65,7 +69,6 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     a = c[:, None] * np.cross(h, t)
     size_n = length(h / stretch)
     n_h = h / stretch / size_n[:, None]
-    turned = side * np.cross(h, u_x)
     rise = dot(n_h, corner)
     reach = np.maximum(length(stretch * turned) / (stretch[:, 0] * stretch[:, 1] * size_n * size_corner), 1e-15)
     across, u_y = normalize(stretch * turned), normalize(stretch * stretch * turned)

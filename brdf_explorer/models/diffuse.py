@@ -11,6 +11,22 @@ from ..lib.warp import cosine_hemisphere
 from ..model import Model, choice, param
 
 
+def r_of_sigma(sigma):
+    """eon's r that has the shape of oren_nayar of a sigma: B / A, since r is that ratio of Fujii's terms of the same names.
+
+    Where wo.xy . wi.xy > 0 and white facets would add nothing by a second reflection, the laws are then in one proportion.
+    """
+    s2 = sigma * sigma
+    return 0.45 * s2 / (s2 + 0.09) / (1 - 0.5 * s2 / (s2 + 0.33))
+
+
+def sigma_of_r(r):
+    """The sigma of `r_of_sigma`; 1, the largest, where r is above 0.66."""
+    r = min(r, r_of_sigma(1.0))
+    b, c = 0.1485 - 0.375 * r, 0.0297 * r
+    return min((2 * c / (b + (b * b + 4 * (0.45 - 0.5 * r) * c) ** 0.5)) ** 0.5, 1.0)
+
+
 @dataclass(frozen=True)
 class Diffuse(Model):
     """Diffuse reflection by one of several laws. Leaves out light that leaves the body elsewhere."""

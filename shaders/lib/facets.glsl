@@ -29,7 +29,7 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
   float size_o = length(stretch * wo), size_i = length(stretch * wi);
   vec3 o = stretch * wo / size_o, i = stretch * wi / size_i, z = vec3(0.0, 0.0, 1.0);
   float off_oi = dot(o - i, o - i), off_o = dot(o - z, o - z), off_i = dot(i - z, i - z);
-  bool z_between = off_oi >= max(off_o, off_i);
+  bool z_between = off_oi > 1.0001 * max(off_o, off_i);  // no tie where a grazing direction is square to the other
   vec3 p = z_between || off_o > off_i ? o : i;
   vec3 q = z_between ? i : z;
   vec3 k = z_between ? z : off_o > off_i ? i : o;
@@ -46,10 +46,12 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
 
   // the lobe about h: t and c a of wm = stretch * n, as linear forms of n - n_h = x corner + y across, projected
   // lengths of wo and wi that differ by a rounding tilt the shorter of these to the other: it is made upright
-  if (dot(t, t) > dot(both_ways, both_ways)) both_ways -= dot(both_ways, t) / dot(t, t) * t;
+  bool obtuse = dot(t, t) > dot(both_ways, both_ways);
+  if (obtuse) both_ways -= dot(both_ways, t) / dot(t, t) * t;
   float c = 0.5 * length(both_ways);
   vec3 h = both_ways / (2.0 * c);
   float size_n = length(h / stretch);
+  vec3 turned = z_between && obtuse ? normalize(t) : side * cross(h, u_x);  // where t is nearly level its z cancels in the product
   t -= dot(t, h) * h;
   if (dot(t, t) < 1e-12) {
     t = abs(h.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
@@ -58,7 +60,6 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
   t = normalize(t);
   vec3 a = c * cross(h, t);
   vec3 n_h = h / stretch / size_n;
-  vec3 turned = side * cross(h, u_x);
   float rise = dot(n_h, corner);
   float reach = max(length(stretch * turned) / (stretch.x * stretch.y * size_n * size_corner), 1e-15);
   vec3 across = normalize(stretch * turned), u_y = normalize(stretch * stretch * turned);
