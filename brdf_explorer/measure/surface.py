@@ -28,10 +28,13 @@ from .steps import Steps
 LAWS = {"gaussian": "beckmann", "ellipsoids": "ggx", "brushed": "beckmann"}
 """The distribution of normals of each surface."""
 
+HORIZON = 1e-3
+"""Cosine below which a direction is taken for one below the horizon."""
 PERIOD = 64.0  # of a Gaussian surface, in tau
 FINE = 8  # its samples a tau: facets between them have an alpha that is 0.2 % small
 CAPS = 12.0  # period of the ellipsoids, in tau
 GRID = 16  # places a tau where an ellipsoid may stand
+NOISE = 0.05  # of a gap, in tau: what chance adds where the next ellipsoid is chosen
 SMALLEST = 0.08  # radius of the smallest ellipsoid, in tau
 CAST = 48  # samples a tau of ellipsoids that rays are cast over
 ROWS = 64  # that rays are cast over, of a surface
@@ -138,7 +141,7 @@ def gaussian_profiles(rng, count, n, period):
 def ellipsoids(rng, n, period):
     """The Surface of half ellipsoids on a grid of n x n places: the largest that has room, at random, until all are small."""
     pitch = period / n
-    noise = 0.05 * rng.random((n, n))
+    noise = NOISE * rng.random((n, n))
     gap = np.ones((n, n))  # radius of the cap that has room at each place
     score = gap + noise
     nearest = np.zeros((n, n), dtype=int)
@@ -148,7 +151,7 @@ def ellipsoids(rng, n, period):
         radius = gap[y, x]
         if radius < SMALLEST:
             break
-        reach = int(np.ceil((2 * radius + 0.06) / pitch))  # no gap is larger than radius + 0.05
+        reach = int(np.ceil((2 * radius + NOISE) / pitch)) + 1  # no gap is larger than radius + NOISE
         offset = np.arange(-reach, reach + 1)
         rows, columns = np.ix_((y + offset) % n, (x + offset) % n)
         away = pitch * np.hypot(offset[:, None], offset) - radius
@@ -204,7 +207,7 @@ class Patch:
     def seen(self, theta):
         """Share of each segment (n, n - 1) of the square that a direction at theta, in radians, sees; 0 below the horizon."""
         n = len(self.rows)
-        if np.cos(theta) < 1e-3:
+        if np.cos(theta) < HORIZON:
             return np.zeros((n, n - 1))
         return seen(self.rows, self.pitch, (np.sin(theta), np.cos(theta)), False)[:, n - 1 : 2 * n - 2]
 

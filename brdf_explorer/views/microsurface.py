@@ -6,7 +6,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..glsl import assemble
-from ..measure.surface import BINS, G1, LAWS, P2, A, along, first_hit, lit, measured, measuring, patch, seeds, surface
+from ..measure.surface import (
+    BINS,
+    G1,
+    HORIZON,
+    LAWS,
+    P2,
+    A,
+    along,
+    first_hit,
+    lit,
+    measured,
+    measuring,
+    patch,
+    seeds,
+    surface,
+)
 from ..model import Invalid, choice, declared, param
 from .axes import Axes, Axis
 from .diagram import arrow, nice_step, number
@@ -69,39 +84,32 @@ class Microsurface(Drawn):
         width, height = size
         wide, high = (n >= room * scale for n, room in zip(size, ROOM, strict=True))
         foot, top = (24 * scale if height > 200 * scale else 0.0), height - 26 * scale
-        middle = width * 0.55
+
+        def box(left, low, right, high):
+            """Of shares of the picture's width, and of the height between foot and top."""
+            y = (foot + share * (top - foot) for share in (low, high))
+            return (left * width, next(y), right * width, next(y))
+
+        whole = box(0, 0, 1, 1)
         if self.show == "statistics":
             if wide:
-                middle = width / 2
-                return {"slopes": (0, foot, middle, top), "visibility": (middle, foot, width, top)}
+                return {"slopes": box(0, 0, 0.5, 1), "visibility": box(0.5, 0, 1, 1)}
             if high:
-                level = foot + 0.6 * (top - foot)
-                return {"visibility": (0, foot, width, level), "slopes": (0, level, width, top)}
-            return {"visibility": (0, foot, width, top)}
+                return {"visibility": box(0, 0, 1, 0.6), "slopes": box(0, 0.6, 1, 1)}
+            return {"visibility": whole}
         if self.show != "all":
-            return {self.show: (0, foot, width, top)}
-        level = foot + 0.5 * (top - foot)
-        if wide and high:
-            upper = foot + 0.6 * (top - foot)
-            return {
-                "surface": (0, level, middle, top),
-                "profile": (0, foot, middle, level),
-                "slopes": (middle, upper, width, top),
-                "visibility": (middle, foot, width, upper),
-            }
+            return {self.show: whole}
+        if wide and high:  # below the visibility stands why it is not Smith's
+            left = {"surface": box(0, 0.5, 0.55, 1), "profile": box(0, 0, 0.55, 0.5)}
+            return left | {"slopes": box(0.55, 0.6, 1, 1), "visibility": box(0.55, 0, 1, 0.6)}
         if wide:
-            return {"surface": (0, foot, width / 2, top), "profile": (width / 2, foot, width, top)}
+            return {"surface": box(0, 0, 0.5, 1), "profile": box(0.5, 0, 1, 1)}
         if height >= TALL[1] * scale and width >= TALL[0] * scale:
-            upper, lower = foot + 0.68 * (top - foot), foot + 0.38 * (top - foot)
-            return {
-                "surface": (0, upper, width, top),
-                "profile": (0, lower, width, upper),
-                "slopes": (0, foot, 0.46 * width, lower),
-                "visibility": (0.46 * width, foot, width, lower),
-            }
+            upper = {"surface": box(0, 0.68, 1, 1), "profile": box(0, 0.38, 1, 0.68)}
+            return upper | {"slopes": box(0, 0, 0.46, 0.38), "visibility": box(0.46, 0, 1, 0.38)}
         if high:
-            return {"surface": (0, level, width, top), "profile": (0, foot, width, level)}
-        return {"profile": (0, foot, width, top)}
+            return {"surface": box(0, 0.5, 1, 1), "profile": box(0, 0, 1, 0.5)}
+        return {"profile": whole}
 
     def pivot(self, state, size, scale=1.0):
         """The place (2,) about which a drag turns the viewer, in pixels from the bottom left."""
@@ -308,7 +316,7 @@ class Microsurface(Drawn):
             for theta, free, color in ((ground.theta_i, "green", "red"), (ground.theta_o, "accent", "blue")):
                 w = np.array([np.sin(theta), np.cos(theta)])
                 slope = (z[i + 1] - z[i]) / cut.pitch
-                if w[1] < 1e-3 or w[1] - slope * w[0] <= 0:
+                if w[1] < HORIZON or w[1] - slope * w[0] <= 0:
                     continue
                 hit = first_hit(row, cut.pitch, n - 1 + i, w)
                 if hit is None:
@@ -347,6 +355,7 @@ class Microsurface(Drawn):
         else:
             off = np.zeros(n - 1)
         reached = (cut.lit[0] > 0.99) & (cut.seen[0] > 0.99) & (np.abs(place) < 0.4)
+        # the best turned one near the middle: the whole width counts as a tilt of 0.3; one out of reach only if all are
         i = int(np.argmin(off + 0.3 * np.abs(place) + 10.0 * ~reached))
         foot = line[i : i + 2].mean(axis=0)
         for name, color, theta in pointers:
@@ -403,7 +412,7 @@ class Ground:
 
     def pointers(self):
         """(name, colour, angle) of the viewer, and of the light if it is above the horizon."""
-        light = [("ωi", "green", self.theta_i)] * int(np.cos(self.theta_i) >= 1e-3)
+        light = [("ωi", "green", self.theta_i)] * int(np.cos(self.theta_i) >= HORIZON)
         return [("ωo", "accent", self.theta_o), *light]
 
     def cut(self, extent, n):

@@ -215,7 +215,7 @@ def header(draw, state, found, colors):
         if len(colors) == 1:
             words += ", the only one"
         same = [other for other in list(colors)[: list(colors).index(name)] if alike(found, other, name)]
-        if same:
+        if same and width >= 520:
             words += f" (varies as {same[0]})"
         if x > 12 and x + width_of(words, 12.5) > width - 8:
             x, y = 12.0, y + 17
