@@ -13,6 +13,7 @@ from ..model import choice, param
 from .axes import Axes, Axis
 from .diagram import number
 from .drawing import Drawing, Drawn, cut, width_of, wrapped
+from .pace import REDRAWN
 
 NOTHING = "No question with several methods arises for this material in this light."
 UNITS = {"evaluation": ("cost of an evaluation", "ns", 1e9), "sample": ("cost of a sample", "ns", 1e9)}
@@ -21,7 +22,6 @@ SPAN = 12  # most decades of error that are shown
 MARK = 10  # diameter of a mark, points
 STRIP = 30  # height of the strip of exact methods, points
 SMALL = 10.5  # height of small print, points
-REDRAWN = 0.1  # seconds at least from one drawing to the next while measuring goes on
 SHARE = 4  # and at least this times what drawing took
 ASKED = 16  # points from one line of a question to the next
 TALL = 162  # points of a panel whose chart leaves no room for a second one, and without a chart

@@ -17,7 +17,7 @@ from .diagram import QUANTITIES, number
 from .drawing import Drawing, Drawn, cut, nothing
 from .lines import draw_lines
 from .lobe import Camera, stage
-from .pace import in_turn
+from .pace import REDRAWN, in_turn
 from .picture import PALETTES, rgb
 from .polar import NODES
 from .table import progressive
@@ -27,7 +27,6 @@ THROUGH = 0.55  # opacity of the lobe of B, through which A is seen
 LEAST = 1e-12  # of the reference's mean: a difference below it has no colours
 NOTHING = 1e-6  # of the reference's mean: a difference below it is none
 ESTIMATES = 64  # of a stochastic f, whose noise its numbers hold
-REDRAWN = 0.1  # seconds between drawings while the parts get better
 GAP, HEAD, BESIDE = 14, 24, 40  # points between the parts, above each for its title, and beside one for its axis
 NUMBERS, WORDS, FOOT = (
     5,

@@ -23,7 +23,7 @@ from ..model import choice, param
 from .axes import Axis, colorbar
 from .diagram import number
 from .drawing import Drawing, Drawn, nothing
-from .pace import Pace, chords, in_turn
+from .pace import REDRAWN, Pace, chords, in_turn
 from .picture import rgb
 from .table import progressive
 
@@ -42,7 +42,6 @@ HEAD, FOOT, RIM = 46, 26, 24  # points above the disc and below it for words, an
 WALKS = 64  # estimates of a stochastic f for a pixel
 PASSES = 48  # of the table that tells its integral and peak
 FEW = 4  # of these, for where the peak is
-REDRAWN = 0.1  # seconds between drawings while estimates get better
 EDGE = 1 - 1e-6  # radius of the directions that count as the horizon's: on it f is 0
 BAR, INSET, STRIP = 84, 138, 150  # points for the colour bar, for the inset, and of both below the disc
 

@@ -11,10 +11,10 @@ from ..measure.error import METRICS
 from ..measure.least import least
 from ..measure.questions import at, questions, settled
 from ..model import Invalid, choice, param
-from .chart import REDRAWN
 from .compare import HEAD, difference_map, layout, side_of
 from .develop import develop
 from .drawing import Drawing, Drawn, cut, width_of, wrapped
+from .pace import REDRAWN
 
 PICTURED = tuple(name for name, metric in METRICS.items() if metric.compares == "pictures")
 TITLE, ROW, LINE = 30, 19, 15  # points: the heading, a row of the table, a line of words

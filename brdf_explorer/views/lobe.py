@@ -1,5 +1,6 @@
 """The lobe of f over directions to the light, in 3D."""
 
+import time
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from ..model import param
 from .diagram import QUANTITIES, Diagram, apart, arrow, nice_step, number, powers_below, radius
 from .drawing import cut
 from .lines import Stroke, draw_lines
+from .pace import REDRAWN
 from .picture import PALETTES, R2, Label, Picture, rgb
 from .table import NODES, RAYS, noise, progressive
 
@@ -36,13 +38,18 @@ class Lobe(Diagram):
         return (self, state.model, state.directions, state.look.theme)
 
     def pictures(self, gpu, state, size, scale=1.0):
+        picture, since = None, 0.0
         for values, final in progressive(gpu, state.model, state.directions):
+            if picture and not final and time.perf_counter() - since < REDRAWN:
+                yield picture
+                continue
             note = described(values)
             if values[0].error is not None:
                 note += f"; {values[0].walks} walks a direction"
                 note += f", noise {number(100 * noise(values), 2)} %" if np.isfinite(values[0].error).all() else ""
-            for picture in self.drawn(gpu, state, values, size, scale):
-                yield replace(picture, note=note, done=picture.done and final)
+            for drawn in self.drawn(gpu, state, values, size, scale):
+                picture, since = replace(drawn, note=note, done=drawn.done and final), time.perf_counter()
+                yield picture
                 if not final:
                     break
 

@@ -6,6 +6,7 @@ from collections import deque
 import numpy as np
 
 STEP = 0.012  # seconds of a step in the window: three panels and the window itself then answer within 50 ms
+REDRAWN = 0.1  # seconds at least from one drawing to the next while what it shows gets better
 MOST = 16  # pixels along a side that one of the preview stands for, at most
 
 

@@ -1,5 +1,6 @@
 """The slice through the plane of incidence as a polar plot: f or f cos over the direction to the light."""
 
+import time
 from dataclasses import dataclass
 from itertools import count
 from typing import NamedTuple
@@ -13,6 +14,7 @@ from ..measure.noise import mean_f
 from ..model import choice
 from .diagram import QUANTITIES, Diagram, apart, arrow, nice_step, number, powers_below, radius
 from .drawing import Drawing, Drawn, cut, width_of
+from .pace import REDRAWN
 from .picture import Curves
 from .table import LONGEST, PASSES, progressive
 
@@ -160,10 +162,13 @@ class Polar(Drawn, Diagram):
         return Curves("theta_i [deg]", np.degrees(x), y)
 
     def drawings(self, gpu, state, size, scale=1.0):
+        draw, since = None, 0.0
         for slices, walks, done in self.progress(gpu, state):
-            draw, note = self.drawing(state, slices, size, scale)
-            if any(s.error is not None for s in slices):
-                note += f"; {walks} walks a direction, bands of one standard error"
+            if draw is None or done or time.perf_counter() - since > REDRAWN:
+                draw, note = self.drawing(state, slices, size, scale)
+                if any(s.error is not None for s in slices):
+                    note += f"; {walks} walks a direction, bands of one standard error"
+                since = time.perf_counter()
             yield draw, note, done
 
     def drawing(self, state, slices, size, scale):
