@@ -279,19 +279,19 @@ def write_csv(path, state, about, columns):
 # --- tables ----------------------------------------------------------------------------------------------------------
 
 
-def save_table(gpu, state, path, rays=RAYS, nodes=NODES):
+def save_table(gpu, state, path, rays=RAYS, steps=NODES):
     """Write f of the active material for the state's viewer, over directions to the light on a grid that follows the lobe.
 
-    .csv: a row a direction; .npz: arrays (rays, nodes, ...); .exr: an image of rays by nodes with a channel a column.
-    Simpson's rule along rays needs an odd number of nodes, the plane of incidence an even one of rays. Raises Invalid.
+    .csv: a row a direction; .npz: arrays (rays, steps, ...); .exr: an image of rays by steps with a channel a column.
+    Simpson's rule along rays needs an odd number of steps, the plane of incidence an even one of rays. Raises Invalid.
     """
     write = TABLES[known_suffix(path, TABLES, "a table")]
     most = gpu.ctx.info["GL_MAX_TEXTURE_SIZE"]
     if not (4 <= rays <= most and rays % 2 == 0):
         raise Invalid(f"rays = {rays} is not an even number from 4 to {most}")
-    if not (3 <= nodes <= most and nodes % 2 == 1):
-        raise Invalid(f"nodes = {nodes} is not an odd number from 3 to {most}")
-    found = tables(gpu, state.model, state.directions, rays, nodes, passes=128)
+    if not (3 <= steps <= most and steps % 2 == 1):
+        raise Invalid(f"steps = {steps} is not an odd number from 3 to {most}")
+    found = tables(gpu, state.model, state.directions, rays, steps, passes=128)
     wi, f, weight = (np.concatenate(parts) for parts in zip(*((t.grid.wi, t.f, t.weight) for t in found), strict=True))
     theta, phi = np.degrees(angles(wi))
     columns = {"theta_i": theta, "phi_i": phi}
@@ -305,7 +305,7 @@ def save_table(gpu, state, path, rays=RAYS, nodes=NODES):
         f"direction to the viewer wo: theta_o = {state.directions.theta_o:.9g} deg, phi_o = {state.directions.phi_o:.9g} deg",
         "theta_i, phi_i: direction to the light, degrees; f_r, f_g, f_b: BSDF at linear R, G, B in 1/sr, cosine not included",
         "pdf: density of sample_f in 1/sr; weight: solid angle in sr, so that the sum of f weight |cos(theta_i)| is the albedo",
-        f"{rays} rays of {nodes} directions, each from the mirror direction to the horizon; ray 0 and ray {rays // 2} are the"
+        f"{rays} rays of {steps} directions, each from the mirror direction to the horizon; ray 0 and ray {rays // 2} are the"
         " plane of incidence",
     ]
     if state.model.stochastic:

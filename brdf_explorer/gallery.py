@@ -51,7 +51,8 @@ def materials(scene):
 def save_gallery(gpu, states, folder, size, seconds=None):
     """Write NAME-VIEW.png of each of the [(name, State)] and view, NAME.toml, and index.html into a folder.
 
-    Yields (number of the picture, number of all, its name) before each. Raises Invalid if the folder cannot be made.
+    The page is there from the start and grows with each material. Yields (number of the picture, number of all, its name) before
+    each. Raises Invalid if the folder cannot be made.
     """
     folder = Path(folder)
     try:
@@ -63,7 +64,13 @@ def save_gallery(gpu, states, folder, size, seconds=None):
     total = len(views) * len(states)
     done = 0
     sections, links = [], []
+
+    def write_page():
+        with replacing(folder / "index.html") as temporary:
+            temporary.write_text(page(links, sections, gpu.device, len(states)), encoding="utf-8")
+
     for name, (_, state) in zip(names, states, strict=True):
+        write_page()
         pictures = {}
         for view in views:
             done += 1
@@ -74,8 +81,7 @@ def save_gallery(gpu, states, folder, size, seconds=None):
         save(state, folder / f"{name}.toml")
         sections.append(section(name, state, pictures, size))
         links.append(link(name, state, next(iter(pictures.values()))))
-    with replacing(folder / "index.html") as temporary:
-        temporary.write_text(page(links, sections, gpu.device), encoding="utf-8")
+    write_page()
 
 
 def unique(names):
@@ -112,7 +118,8 @@ def section(name, state, pictures, size):
 """
 
 
-def page(links, sections, device):
+def page(links, sections, device, total):
+    so_far = "" if len(sections) == total else f" {len(sections)} of {total} materials are drawn so far: load it again."
     return f"""<!doctype html>
 <html lang="en">
 <meta charset="utf-8">
@@ -121,7 +128,7 @@ def page(links, sections, device):
 <style>{STYLE}</style>
 <main>
 <header><h1>Gallery of materials</h1>
-<p>Each picture holds the preset that made it: drop it on the window of brdf-explorer to go on from there.</p></header>
+<p>Each picture holds the preset that made it: drop it on the window of brdf-explorer to go on from there.{so_far}</p></header>
 <nav>{"".join(links)}</nav>
 {"".join(sections)}
 <p>brdf-explorer {__version__}, {html.escape(device)}</p>

@@ -192,7 +192,7 @@ LADDERS = {
             "f",
             (
                 *(Method(e, {"model": "microfacet", "energy": e}) for e in ("none", "turquin", "kulla_conty")),
-                Method("walk_2", walk(2)),
+                *(Method(f"walk_{n}", walk(n)) for n in (2, 3, 5)),
                 Method("walk", walk(MOST)),
             ),
             loses,

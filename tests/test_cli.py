@@ -6,6 +6,7 @@ import re
 import signal
 import subprocess
 import sys
+from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -19,12 +20,14 @@ from brdf_explorer import __version__
 from brdf_explorer.bench import Figure
 from brdf_explorer.cli import main
 from brdf_explorer.cli.flags import Flag, after, flags_of, number, split
-from brdf_explorer.measure import albedo
+from brdf_explorer.gallery import save_gallery
+from brdf_explorer.measure import albedo, shares
 from brdf_explorer.measure.grid import direction
 from brdf_explorer.model import Choice, Param, Text, declared
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Material, State, dumps, load, presets
 from brdf_explorer.views import VIEWS
+from brdf_explorer.views.drawing import Drawn
 
 SECTIONS = ("material", "directions", "light", "look")
 
@@ -159,6 +162,18 @@ def test_paths_are_those_of_where_the_user_is(fine, tmp_path):
     assert load("deep/x.png").light.file == str(tmp_path / "deep" / "light.exr")
 
 
+@pytest.mark.parametrize("side", [40, 140])
+def test_eval_prints_what_glass_reflects_and_transmits(fine, side):
+    place = ("eval", "glass", "--wo", f"{side},30", "--wi", "20,200")
+    answer = json.loads(fine(*place, "--json"))
+    assert "albedo" not in answer
+    wo = direction(*np.radians([side, 30]))
+    np.testing.assert_allclose([answer["R"], answer["T"]], shares(load("glass").model, wo).value, atol=1e-6)
+    np.testing.assert_allclose(np.add(answer["R"], answer["T"]), 1, atol=1e-5)
+    text = fine(*place)
+    assert f"reflected    {answer['R'][0]:.17g}" in text and f"transmitted  {answer['T'][0]:.17g}" in text
+
+
 def test_eval_prints_f_pdf_and_albedo(fine):
     model = load("gold").model
     wo, wi = direction(*np.radians([40, 30])), direction(*np.radians([20, 200]))
@@ -181,7 +196,7 @@ def test_eval_prints_f_pdf_and_albedo(fine):
 
 @pytest.mark.parametrize("suffix", [".csv", ".npz", ".exr"])
 def test_table_is_written(fine, suffix):
-    out = fine("table", "gold", "--theta-o", "60", "--rays", "8", "--nodes", "5", "-o", f"x{suffix}")
+    out = fine("table", "gold", "--theta-o", "60", "--rays", "8", "--steps", "5", "-o", f"x{suffix}")
     assert "8 x 5 directions, theta_o = 60 deg" in out
     assert load(f"x{suffix}").directions.theta_o == 60
 
@@ -247,6 +262,16 @@ def test_gallery_is_a_page_with_all_its_pictures(fine):
     for link in re.findall(r'href="([^"#]+)"', page):
         assert load(f"deep/g/{link}").light == load("studio").light
     assert "http" not in page
+
+
+def test_gallery_is_a_page_from_the_start(gpu, tmp_path):
+    states = [(name, load(name)) for name in ("gold", "chalk")]
+    for i, _, _ in save_gallery(gpu, states, tmp_path, (8, 8), 0.0):
+        page = (tmp_path / "index.html").read_text(encoding="utf-8")
+        shown = set(re.findall(r'src="([^"]+)"', page))
+        assert len(shown) == (i - 1) // len(GALLERY) * len(GALLERY)
+        assert all((tmp_path / name).exists() for name in shown) and "2 materials are drawn so far" in page
+    assert "so far" not in (tmp_path / "index.html").read_text(encoding="utf-8")
 
 
 def test_gallery_holds_each_material_preset(fine):
@@ -320,6 +345,26 @@ def test_each_flag_sets_its_parameter(fine, name, view):
     for key, flag in flags_of(load("x.png"), [*SECTIONS, view]).items():
         if key in wanted:
             assert flag.value == wanted[key]
+
+
+def test_help_of_render_names_the_views_by_format():
+    words = " ".join(main.commands["render"].help.split())
+    assert f"of all views but {listed(v for v in VIEWS if not issubclass(VIEWS[v], Drawn))} also an .svg" in words
+    assert f"of {listed(v for v in VIEWS if hasattr(VIEWS[v], 'table_of'))} also a .csv" in words
+
+
+def listed(names):
+    *first, last = names
+    return f"{', '.join(first)} and {last}"
+
+
+@pytest.mark.parametrize("name", main.commands)
+def test_no_flag_of_a_parameter_hides_an_option(name):
+    command = main.commands[name]
+    own = {word for option in command.params for word in option.opts} | {"-h", "--help"}
+    for model, view in product(MODELS.values(), VIEWS):
+        sections = [view if section == "view" else section for section in getattr(command, "sections", ())]
+        assert not own & set(flags_of(State((Material("x", model()),)), sections))
 
 
 def test_flags_stand_anywhere_and_in_all_forms(fine):
@@ -419,7 +464,7 @@ def test_words_are_split_from_the_arguments():
         (("eval", "gold", "--wo", "40,0", "--wi", "0,1e9"), "is no direction"),
         (("table", "gold", "-o", "x.png"), "there are: .csv, .npz, .exr"),
         (("table", "gold", "--rays", "7", "-o", "x.csv"), "rays = 7"),
-        (("table", "gold", "--nodes", "x", "-o", "x.csv"), "nodes"),
+        (("table", "gold", "--steps", "x", "-o", "x.csv"), "steps"),
         (("gallery", "gould"), "did you mean gold?"),
         (("gallery", "gold", "-o", "kept.toml"), "kept.toml: cannot make this folder"),
         (("gallery", "--scene", "none"), "none"),

@@ -54,8 +54,8 @@ def files(gpu, state, tmp_path_factory):
     for suffix in (".png", ".exr"):
         save_view(gpu, state, "sphere", made[suffix], SIZE)
     save_view(gpu, state, "polar", made[".svg"], SIZE)
-    save_table(gpu, state, made[".csv"], rays=8, nodes=5)
-    save_table(gpu, state, made[".npz"], rays=8, nodes=5)
+    save_table(gpu, state, made[".csv"], rays=8, steps=5)
+    save_table(gpu, state, made[".npz"], rays=8, steps=5)
     return made
 
 
@@ -88,7 +88,7 @@ def test_the_preset_comes_back_exactly(files, state, suffix):
 
 def test_other_files_that_are_written_carry_it_too(gpu, state, tmp_path):
     save_view(gpu, state, "polar", tmp_path / "curves.csv", SIZE)
-    save_table(gpu, state, tmp_path / "table.exr", rays=8, nodes=5)
+    save_table(gpu, state, tmp_path / "table.exr", rays=8, steps=5)
     save_view(gpu, state, "lobe", tmp_path / "LOBE.PNG", SIZE)
     for file in tmp_path.iterdir():
         assert loads(embedded(file)) == state
@@ -315,10 +315,22 @@ def test_tables_hold_f_pdf_and_weights(gpu, tmp_path, name):
     np.testing.assert_array_equal(channels["G"].ravel(), rows["f_g"].astype(np.float32))
 
 
-@pytest.mark.parametrize(("rays", "nodes"), [(3, 49), (0, 49), (10**6, 49), (96, 48), (96, 1), (96, 10**6 + 1)])
-def test_tables_that_cannot_be_are_refused(gpu, tmp_path, rays, nodes):
-    with pytest.raises(Invalid, match="rays|nodes"):
-        save_table(gpu, State(), tmp_path / "x.csv", rays, nodes)
+@pytest.mark.parametrize("view", ["factors", "facets", "microsurface"])
+def test_a_table_has_rows_or_a_reason(gpu, tmp_path, view):
+    for name, model in MODELS.items():
+        path = tmp_path / f"{name}.csv"
+        try:
+            save_view(gpu, State((Material(name, model()),)), view, path, (64, 64))
+        except Invalid as error:
+            assert name in str(error) and not path.exists()
+        else:
+            assert len(read_csv(path)) > 9
+
+
+@pytest.mark.parametrize(("rays", "steps"), [(3, 49), (0, 49), (10**6, 49), (96, 48), (96, 1), (96, 10**6 + 1)])
+def test_tables_that_cannot_be_are_refused(gpu, tmp_path, rays, steps):
+    with pytest.raises(Invalid, match="rays|steps"):
+        save_table(gpu, State(), tmp_path / "x.csv", rays, steps)
 
 
 # --- nothing is lost -------------------------------------------------------------------------------------------------

@@ -15,8 +15,10 @@ from brdf_explorer.lib.warp import uniform_hemisphere
 from brdf_explorer.measure.albedo import albedo
 from brdf_explorer.measure.grid import direction
 from brdf_explorer.measure.mirror_limit import differences, mirrors, sharpened
+from brdf_explorer.model import Invalid
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Directions, Material, State, load
+from brdf_explorer.views.facets import curve
 
 Nonspecular, Microfacet, Diffuse = (MODELS[name] for name in ("nonspecular", "microfacet", "diffuse"))
 NDFS = ("ggx", "beckmann")
@@ -197,7 +199,57 @@ def test_the_view_tells_the_limit_and_what_F_does(gpu):
 
 
 def test_the_view_says_when_there_are_no_facets(gpu):
-    assert "No facets to sharpen:" in words(gpu, load("chalk"))[1]
+    reasons = {
+        "chalk": "Chalk: it has no distribution of facets",
+        "frosted_glass": "Frosted glass: its facets let light through",
+        "rough_gold": "its light meets several facets",
+    }
+    for name, why in reasons.items():
+        state = load(name)
+        assert any(why in text for text in words(gpu, state)[1])
+        with pytest.raises(Invalid, match=why):
+            state.views["facets"].table_of(gpu, state)
+
+
+@pytest.mark.parametrize(("size", "scale"), [((430, 350), 1), ((860, 700), 2), ((900, 480), 1), ((800, 600), 2)])
+def test_the_view_has_room_for_both_plots_and_the_legend(gpu, size, scale):
+    *_, picture = load("gold").views["facets"].pictures(gpu, load("gold"), size, scale)
+    text = [label.text for label in picture.labels]
+    assert {"θi in the plane of incidence", "sharpness κ", "κ = 30", "κ = 1e4"} <= set(text)
+
+
+def test_the_view_shows_smooth_facets_at_grazing_and_black_ones(gpu):
+    for model, theta_o in (
+        (Microfacet(alpha=0.01), 82.0),
+        (Microfacet(alpha=1e-4), 89.9),
+        (Microfacet(fresnel="dielectric", eta=1.0, k=0.0), 40.0),
+    ):
+        state = replace(State((Material("", model),)), directions=Directions(theta_o=theta_o))
+        assert "of the peak" in words(gpu, state)[0].note
+
+
+def test_curves_follow_the_slopes_within_the_plane_of_incidence():
+    """Of facets much rougher across it than within, the peak of their mirrors is met, and some directions lie on its sides."""
+    for alpha, phi_o in (((0.01, 1.0), 0.0), ((1.0, 0.01), 90.0)):
+        theta, f = curve(Microfacet(alpha=alpha), np.inf, 40.0, phi_o)
+        assert theta[f.argmax()] == pytest.approx(np.radians(-40), abs=1e-3)
+        assert np.count_nonzero(f > 0.5 * f.max()) > 20
+
+
+KAPPAS = ("10", "33", "100", "1000", "1e4")
+
+
+def test_the_window_sees_curves_as_they_become_known(gpu):
+    """None before the first, then mirrors and the thick curve; the last picture is that of a run without a time to keep."""
+    state = load("gold")
+    view = replace(state.views["facets"], sharpness=33.0)
+    steps = [step for step in view.drawings(gpu.paced(0.02), state, (430, 350)) if step]
+    assert steps[0][0] is None and all(drawing for drawing, _, _ in steps[2:])
+    first = next(drawing for drawing, _, _ in steps if drawing)
+    *_, (alone, note, done) = view.drawings(gpu, state, (430, 350))
+    assert len(first.items) < len(alone.items)
+    assert [label.text for label in first.labels if "κ =" in label.text] == [f"κ = {k}" for k in KAPPAS]
+    assert steps[-1][0].labels == alone.labels and steps[-1][1:] == (note, done)
 
 
 def test_table_of_the_view(gpu):

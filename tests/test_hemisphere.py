@@ -49,7 +49,7 @@ def map_of(view, gpu, state, wo, up, peak, side, middle, pixel):
 @np.errstate(under="ignore")
 def test_map_shows_the_models_values(gpu, quantity, scale):
     """Colours of the shader's map are those of float64 values at the pixels' points nearest to the peak."""
-    view, side = Hemisphere(quantity=quantity, scale=scale), 64
+    view, side = Hemisphere(quantity=quantity, colors=scale), 64
     for model in (MICROFACET(alpha=(0.15, 0.4)), MODELS["dielectric"](alpha=(0.15, 0.4), ndf="beckmann")):
         state = State(directions=Directions(55.0, 25.0)).with_model(model)
         for up in view.hemispheres(model):
@@ -118,7 +118,7 @@ def test_peaks_are_the_known_ones():
 def test_sharp_lobes_do_not_vanish_between_pixels(gpu, quantity, alpha):
     """One pixel of the map has the peak's colour, wherever the peak lies in it, and the inset shows the lobe's width."""
     state = State().with_model(MICROFACET(alpha=alpha, ndf="beckmann"))
-    view = Hemisphere(quantity=quantity, scale="linear")
+    view = Hemisphere(quantity=quantity, colors="linear")
     for theta_o in (10.0, 33.3, 70.0):
         wo = direction(np.radians(theta_o), 0.4)
         peak = view.peak(state.model, wo)

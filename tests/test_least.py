@@ -24,6 +24,7 @@ from brdf_explorer.measure import bias as bias_of
 from brdf_explorer.measure import judge as judging
 from brdf_explorer.measure import least as module
 from brdf_explorer.measure.bias import Estimate
+from brdf_explorer.measure.error import picture_rmse
 from brdf_explorer.measure.judge import FINE, SIDE, Judge
 from brdf_explorer.measure.least import Prices, in_order, least, passes, result, search
 from brdf_explorer.measure.questions import at, questions
@@ -536,10 +537,22 @@ def test_bad_input_of_the_command_is_one_line(run, arguments, words):
     assert [path.name for path in Path(".").iterdir()] == ["noisy.toml"]
 
 
-def test_a_ball_with_light_inside_is_refused_and_the_chart_is_named(gpu):
-    words = r"Glass: light inside a ball is not compared here; .*`chart masking --preset PRESET`.* f of its methods"
-    with pytest.raises(Invalid, match=words):
-        result(least(gpu, load("glass", load("studio"))))
+def test_a_ball_with_light_inside_is_judged_by_pictures(gpu):
+    """Its question of masking is asked, and the error told is what pictures of other random numbers have."""
+    ladders = {"masking": LADDERS["masking"], "environment": SAMPLES}
+    state = load("frosted_glass", load("white_furnace"))
+    asked, _ = questions(state, ladders=ladders)
+    assert [m.name for m in asked[0].methods] == [m.name for m in LADDERS["masking"].methods]
+    answer = result(least(gpu, state, 0.3, ladders=ladders, prices=generous(asked)))
+    assert answer.error.high <= 0.3 and answer.steps[0].chosen.name != "beta"
+
+    def picture(state, samples):
+        view = state.with_view("sphere", samples=samples, noise=1e-6).views["sphere"]
+        *_, last = view.pictures(gpu.apart(), state, (40, 40))
+        return gpu.pixels(last.target)
+
+    reduced = picture(answer.reduced, answer.reduced.views["sphere"].samples)
+    assert picture_rmse(reduced, picture(answer.reference, 1024)) < 0.3
 
 
 def test_a_tolerance_below_the_noise_of_the_reference_is_refused_before_the_search(gpu, monkeypatch):

@@ -321,3 +321,11 @@ def test_other_light_changes_nothing():
     assert state.views[VIEW].shows(state) == state.views[VIEW].shows(
         replace(state, light=replace(state.light, gain=2.0))
     )
+
+
+def test_the_window_gets_short_steps_and_the_same_picture(gpu):
+    state = at()
+    steps = list(state.views[VIEW].drawings(gpu.paced(1e-4), state, (600, 420)))
+    alone = list(state.views[VIEW].drawings(gpu, state, (600, 420)))
+    assert steps[0][0] is None and all(draw for draw, *_ in alone)
+    assert steps[-1][0].labels == alone[-1][0].labels and steps[-1][1:] == alone[-1][1:]

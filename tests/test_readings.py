@@ -15,7 +15,8 @@ from brdf_explorer.lib.spheres import sphere_s
 from brdf_explorer.measure import half_space
 from brdf_explorer.measure.grid import direction
 from brdf_explorer.measure.microsurface import projected_area
-from brdf_explorer.measure.readings import COARSE, EXAMPLES, READINGS, found
+from brdf_explorer.measure.readings import COARSE, EXAMPLES, READINGS, finding, found
+from brdf_explorer.measure.steps import Steps
 from brdf_explorer.measure.surface import gaussian
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Directions, State, load
@@ -235,7 +236,7 @@ def test_page_says_what_is_printed_what_is_right_and_the_cost(gpu, name):
     state = State(directions=Directions(theta_o=60.0)).with_view("readings", reading=name)
     words = [label.text for label in page(gpu, state).labels]
     assert {*WORDS[name].printed, *WORDS[name].right, "as printed", "right"} <= set(words)
-    for cost in state.views["readings"].found(state)[0].costs:
+    for cost in found(*state.views["readings"].question(state))[0].costs:
         assert cost.name in words
     assert any(word.startswith("× ") for word in words)
 
@@ -267,3 +268,36 @@ def test_curves_are_written(gpu, tmp_path):
         save_view(gpu, state, "readings", tmp_path / f"x.{suffix}", (600, 400))
     rows = [line for line in (tmp_path / "x.csv").read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
     assert rows[0] == "θ [deg],printed,right" and len(rows) > 20
+
+
+def test_an_example_says_why_it_is_one():
+    reasons = {
+        ("frosted_glass", "fresnel"): "its facets let light through",
+        ("rough_gold", "stretching"): "its light meets several facets",
+        ("chalk", "mirrors"): "it has no distribution of facets",
+        ("copper", "slope"): "slopes of GGX have no rms",
+    }
+    for (preset, name), why in reasons.items():
+        assert found(name, load(preset).model, 0.7, 0.0, COARSE)[1] == why
+
+
+def test_the_window_gets_short_steps_and_the_same_page(gpu):
+    """None before the first page; none of the last one differs from that of a run without a time to keep."""
+    state = State(directions=Directions(theta_o=61.0)).with_view("readings", reading="fresnel")
+    finding.cache_clear()
+    steps = list(state.views["readings"].drawings(gpu.paced(1e-4), state, (430, 350)))
+    alone = list(state.views["readings"].drawings(gpu, state, (430, 350)))
+    assert steps[0][0] is None and len(steps) > 40 and len(alone) == 2
+    assert steps[-1][0].labels == alone[-1][0].labels and steps[-1][2]
+
+
+def test_an_error_in_a_step_is_not_waited_for():
+    def steps():
+        yield
+        raise ValueError
+
+    one = Steps(steps())
+    with pytest.raises(ValueError):
+        one.all()
+    with pytest.raises(RuntimeError, match="ended with an error"):
+        one.all()

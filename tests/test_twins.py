@@ -18,7 +18,7 @@ from brdf_explorer.lib import fresnel, schlick
 from brdf_explorer.lib.common import PI, TWO_PI, dot, length, normalize, quotient, vec
 from brdf_explorer.lib.fresnel import eta2_cos2_t
 from brdf_explorer.lib.random import seeded
-from brdf_explorer.lib.refraction import cos_refracted, refracted, sum_refracted, upward
+from brdf_explorer.lib.refraction import T_spread, cos_refracted, refracted, sum_refracted, upward
 from brdf_explorer.measure.laws import doubt
 from brdf_explorer.model import Param, declared
 from brdf_explorer.models import MODELS
@@ -195,6 +195,10 @@ def sum_length(rng, n, size, drawn):
     return least * (most / least) ** rng.random((n, 1))
 
 
+def refracting_facet(rng, n, size, drawn):
+    return hemisphere(rng, n, size, drawn) * sum_length(rng, n, 1, drawn)
+
+
 def sine_of(cosine):
     return lambda rng, n, size, drawn: np.sqrt((1 - drawn[cosine]) * (1 + drawn[cosine]))
 
@@ -266,6 +270,7 @@ DRAWS = {
     "beta_one_plus.x": either(ZERO, decades(1e-6, 1e6)),
     "beta_one_plus.y": either(ZERO, decades(1e-6, 1e6), uniform(0, 60)),
     "refracted.wm": facing,
+    "T_spread.m": refracting_facet,
     "upward.w": sphere,
     "viridis.x": uniform(-0.1, 1.1),
     "diverging.x": uniform(-1.1, 1.1),
@@ -318,6 +323,10 @@ FLOORS = {
     "refraction.refracted": lambda w, wm, eta: refraction_floor(dot(w, wm), eta),
     # A polynomial that changes its sign, of terms that add up to 7.9e-3 at most, each known to four roundings.
     "lambert_sphere.excess": lambda mu: 4 * 6e-8 * 7.9e-3,
+    # Twice the smaller cosine is |eta^2 - 1| / L - L, of eight roundings; what passes goes as its square.
+    "refraction.T_spread": lambda m, eta: (
+        8 * 6e-8 * T_spread(m, eta) * length(m) / np.maximum(grazing(m, eta), TINY) + TINY
+    ),
     # Blacks are differences of numbers near 0.1, and a display value below 1e-6 is black on any screen.
     "tonemap_aces.tonemap": lambda color: 1e-6,
     "tonemap_agx.tonemap": lambda color: 1e-6,
@@ -328,6 +337,11 @@ FLOORS = {
 def refraction_floor(c, eta):
     t = np.sqrt(np.maximum(eta2_cos2_t(c, eta), 1e-7))
     return 1.2e-7 / t * np.abs(eta * eta - 1) / ((c + t) ** 2 * eta)
+
+
+def grazing(m, eta):
+    """The smaller of the cosines at a facet of normal m, times the index on its side, its sign left out."""
+    return np.abs(cos_refracted(length(m), eta) * vec(1.0, eta)).min(axis=-1)
 
 
 def near_critical(c, eta, k=0.0, share=1e-6):
@@ -346,6 +360,7 @@ EXEMPT = {
     "fresnel_dielectric.F": lambda c, eta, k: near_critical(c, eta),
     "fresnel_conductor.F": near_critical,
     "refraction.refracted": lambda w, wm, eta: near_critical(dot(w, wm), eta, share=1e-5),
+    "refraction.T_spread": lambda m, eta: grazing(m, eta) < 1e-6 * length(m),
 }
 
 

@@ -10,12 +10,16 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import traceback
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+
+from brdf_explorer.model import Choice, declared
+from brdf_explorer.models import MODELS
 
 ROOT = Path(__file__).resolve().parent.parent
 SIZE = (1280, 800)
@@ -96,6 +100,24 @@ def reads(model):
 
 
 @act
+def every_preset_of_a_material_opens(user):
+    from brdf_explorer.model import Invalid
+    from brdf_explorer.state import presets
+    from brdf_explorer.ui.canvas import Canvas
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Canvas, "panel", lambda canvas, gpu, state, *_: state)  # what views draw is tested elsewhere
+        for name, path in presets().items():
+            try:
+                user.window.state = user.window.preset(name, False)
+            except Invalid as error:
+                raise AssertionError(name) from error
+            user.yield_(1)
+            if path.parent.name == "materials":
+                assert reads(user.state.model) <= set(vars(user.state.model)) and not user.window.notice, name
+
+
+@act
 def another_model_keeps_the_name_given_to_the_material(user):
     user.window.state = replace(user.state, materials=(replace(user.state.material, name="mine"),))
     user.item("//Material/##choice")
@@ -141,6 +163,25 @@ def drags_on_pictures_move_light_camera_and_viewer(user):
     user.ctx.item_drag_with_delta("//Polar slice/picture", (60, 40))
     assert user.state.directions.theta_o != start.directions.theta_o
     assert replace(user.state, light=start.light, views=start.views, directions=start.directions) == start
+
+
+@act
+def every_view_has_a_tab_and_comes_to_the_front_from_the_menu(user):
+    from imgui_bundle import imgui
+
+    from brdf_explorer.ui.canvas import Canvas
+    from brdf_explorer.ui.window import FRONT
+    from brdf_explorer.views import VIEWS
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Canvas, "panel", lambda canvas, gpu, state, *_: state)  # what views draw is tested elsewhere
+        for name in (*VIEWS, *FRONT):
+            user.item("views")
+            user.item(f"//$FOCUSED/{VIEWS[name].title}")
+            bar = imgui.internal.find_window_by_name(VIEWS[name].title).dock_node.tab_bar
+            assert bar.width_all_tabs_ideal <= bar.bar_rect.get_width(), "tabs are hidden"
+            assert name in user.window.front
+    assert user.window.front == FRONT
 
 
 @act
@@ -356,9 +397,7 @@ class User:
     def pictures(self):
         """The finished pictures by view, uint8 (H, W, 4)."""
         self.yield_()
-        for _ in range(400):
-            if not any(canvas.busy for canvas in self.window.canvases.values()):
-                break
+        while any(self.window.canvases[name].busy for name in self.window.front):
             self.yield_(1)
         return self.read("pictures")
 
@@ -411,11 +450,11 @@ def play(folder, what):
     glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
     glfw.init()
     glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
-    start = load("gold", load("studio")).with_view("sphere", samples=128) if what == "opened" else State()
+    start = load("gold", load("studio")).with_view("sphere", samples=48) if what == "opened" else State()
     window = Window(start)
     user = User(window, folder)
     scale = 2.0 if what == "doubled" else 1.0
-    parameters = window.parameters(SIZE if what == "acts" else tuple(int(n * scale) for n in SMALL))
+    parameters = window.parameters(SIZE if what in ("acts", "opened") else tuple(int(n * scale) for n in SMALL))
     geometry = parameters.app_window_params.window_geometry
     geometry.window_size_measure_mode = hello_imgui.WindowSizeMeasureMode.screen_coords  # its surface is never resized
     parameters.ini_disable = True
@@ -476,6 +515,43 @@ def test_user(played, name):
     outcomes = json.loads(path.read_text()) if path.exists() else {}
     assert name in outcomes, f"not reached\n{log}"
     assert not outcomes[name], f"{outcomes[name]}\n{log}"
+
+
+def test_thumbnails_get_better_in_small_steps(gpu, monkeypatch):
+    from brdf_explorer.ui import thumbnails as module
+
+    monkeypatch.setattr(module, "ROUGH", 0.05)
+    thumbnails, names, took = module.Thumbnails(gpu), ("gold", "etched_glass", "white_plaster"), []
+    for idle in [False] * 40 + [True] * 20:
+        for name in names:
+            thumbnails.get(name, "light", 64)
+        assert thumbnails.busy
+        start = time.perf_counter()
+        thumbnails.advance(idle)
+        took.append(time.perf_counter() - start)
+        spent = [thumbnails.drawn[name, "light"].took for name in names]
+        assert idle or max(spent) < module.ROUGH + max(took)
+    assert np.median(took) < 0.02 and max(spent) > module.ROUGH
+    for name in names:
+        assert gpu.pixels(thumbnails.get(name, "light", 64))[32, 32].any()
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_every_parameter_matters_by_some_choice(name):
+    model, found = MODELS[name](), set()
+    for choice, declaration in declared(model, Choice).items():
+        tried = [replace(model, **{choice: option}) for option in declaration.options]
+        found |= set().union(*map(reads, tried))
+        model = max(tried, key=lambda m: len(reads(m)))  # the next choice may matter to some options of this one
+    assert found == set(declared(model))
+
+
+def test_parameters_of_other_facets_do_not_matter():
+    of = {"conductor": {"eta", "k", "fresnel"}, "dielectric": {"eta_below"}, "diffuse": {"albedo"}}
+    for facets, own in of.items():
+        others = set().union(*of.values()) - own
+        found = reads(MODELS["multiscatter"](facets=facets))
+        assert found >= own | {"alpha", "ndf", "lowest", "orders"} and not found & others, facets
 
 
 def test_scale(played):

@@ -20,9 +20,11 @@ from brdf_explorer.views import VIEWS
 from brdf_explorer.views.compare import ESTIMATES, both_lobes, differences_of_values
 from brdf_explorer.views.develop import develop
 from brdf_explorer.views.drawing import Drawing
+from brdf_explorer.views.lines import Stroke
 from brdf_explorer.views.picture import PALETTES, Picture, rgb
+from brdf_explorer.views.polar import FEW
 from brdf_explorer.views.sphere import toward
-from brdf_explorer.views.table import table
+from brdf_explorer.views.table import noise, progressive, table
 
 MICROFACET, DIFFUSE = MODELS["microfacet"], MODELS["diffuse"]
 
@@ -251,6 +253,18 @@ def test_factors_say_that_d_cos_integrates_to_1_and_when_there_are_none(gpu):
 
     assert "∫ D cos θ dω = 1.0000000000" in words("gold")
     assert any("No factors to show" in w for w in words("chalk"))
+    with pytest.raises(Invalid, match="is no product of D, G and F"):
+        load("chalk").views["factors"].table_of(gpu, load("chalk"))
+
+
+@pytest.mark.parametrize("name", ["glass", "mirror_chrome", "gold", "frosted_glass"])
+def test_the_axis_of_factors_shows_each_curve(gpu, name):
+    state = load(name)
+    for drawing, *_ in state.views["factors"].drawings(gpu, state, (700, 450)):
+        lines = [item for _, item in drawing.items if isinstance(item, Stroke)]
+        for color in (*drawing.colors["curves"][:4], drawing.colors["ink"]):
+            heights = np.concatenate([line.points[:, 1] for line in lines if line.color == color])
+            assert heights.max() > 70, color  # over the foot of the axes, which is at 62
 
 
 def two(**models):
@@ -347,3 +361,29 @@ def test_a_drag_moves_the_line(gpu):
     left, _, right, _ = view.boxes((600, 640))[0]["sphere"]
     assert swipe(GREY, view, ((left + right) / 2, 100), (600, 640), 1.0).views["compare"].swipe == 0.5
     assert swipe(GREY, view, (-50, 100), (600, 640), 1.0).views["compare"].swipe == 0.0
+
+
+def test_a_lobe_too_thin_to_be_seen_is_a_line_with_its_width(gpu):
+    """GGX's D is half its peak at the slope alpha sqrt(sqrt(2) - 1), and wi turns by twice the facet's angle."""
+    for name, words in (("glass", "drawn as lines"), ("mirror_chrome", "drawn as a line"), ("gold", "")):
+        state = load(name)
+        text = " ".join(words_of(last(state.views["lobe"].pictures(gpu, state, (430, 350)))))
+        assert ("too thin" in text) == bool(words) and words in text
+    chrome = replace(load("mirror_chrome"), directions=Directions(theta_o=0.0))
+    text = next(w for w in words_of(last(chrome.views["lobe"].pictures(gpu, chrome, (430, 350)))) if "too thin" in w)
+    wide = np.degrees(4 * chrome.model.alpha[0] * np.sqrt(np.sqrt(2) - 1))
+    assert float(text.split(": ")[1].split("°")[0]) == pytest.approx(wide, rel=0.02)
+
+
+def test_slices_of_estimates_have_no_corners(gpu):
+    """Not even of a refracted lobe near total internal reflection, which is far narrower than its grid takes it for."""
+    model = replace(load("etched_glass").model, eta_below=0.6667)
+    found, _ = next(progressive(gpu, model, Directions(theta_o=60.0), 2, FEW))
+    for one in found:
+        assert np.max(np.diff(np.degrees(one.plane()[0]))) < 2.5
+
+
+def test_nothing_found_is_not_taken_for_no_noise(gpu):
+    model = replace(load("rough_gold").model, lowest=64)
+    found, done = next(progressive(gpu, model, Directions(theta_o=89.9), 2, FEW))
+    assert not done and noise(found) == np.inf

@@ -10,6 +10,8 @@ from .flags import Flagged, loaded
 from .options import Number, Size, ViewName, output_option, preset_argument, scene_option, seconds_option, with_option
 from .output import progress
 
+QUICK = 1.0  # most seconds for a picture of the gallery that is drawn in place of the window
+
 
 def beside(state, others):
     """The state with materials of other presets after its own."""
@@ -28,9 +30,10 @@ def open_(state, preset, others):
     state = beside(state, others)
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         click.echo(
-            "No display: neither DISPLAY nor WAYLAND_DISPLAY is set. Drawing a gallery into gallery/, which takes a minute or so."
+            "No display: neither DISPLAY nor WAYLAND_DISPLAY is set. Drawing a gallery: gallery/index.html, which grows for a"
+            " minute or so."
         )
-        return write_gallery("gallery", [(preset, state)] if preset else None)
+        return write_gallery("gallery", [(preset, state)] if preset else None, seconds=QUICK)
     from ..state import CARRIERS
     from ..ui import run
 
@@ -53,7 +56,8 @@ def open_(state, preset, others):
 def render(state, preset, others, view, size, scale, seconds, output):
     """Draw a view of PRESET into a file.
 
-    FILE is a .png or .exr picture; for polar also an .svg or .pdf drawing, or a .csv table of its curves.
+    FILE is a .png or .exr picture; of all views but sphere and lobe also an .svg or .pdf drawing; of polar, factors, facets,
+    sampling, readings and microsurface also a .csv table of their curves. The command table has f over all directions.
     """
     from ..export import save_view
     from ..gpu import offscreen
@@ -75,7 +79,7 @@ def render(state, preset, others, view, size, scale, seconds, output):
 def gallery(presets, scene, size, seconds, output):
     """Draw all materials in all views, and a page of them.
 
-    Or only the PRESETS that are given. The page is index.html.
+    Or only the PRESETS that are given. The page is index.html, which grows as pictures come.
     """
     return write_gallery(output, [(name, loaded(name, scene)) for name in presets] or None, scene, size, seconds)
 

@@ -17,8 +17,9 @@ from .output import print_table, progress
 def eval_(state, preset, wo, wi, shader, as_json):
     """Print f, pdf and albedo of PRESET.
 
-    The directional albedo is for wo, by quadrature in float64. Of a stochastic model f and albedo are means of estimates, with
-    their standard errors.
+    The directional albedo is for wo, by quadrature in float64; of a material that transmits it is two, the shares R and T of the
+    energy from wo that are reflected and transmitted. Of a stochastic model f and albedo are means of estimates, with their
+    standard errors.
     """
     import json
 
@@ -26,7 +27,7 @@ def eval_(state, preset, wo, wi, shader, as_json):
 
     from ..gpu import offscreen
     from ..lib.random import seeded
-    from ..measure import albedo_with_error
+    from ..measure.albedo import Integral, albedo_with_error, shares
     from ..measure.grid import direction
     from ..measure.laws import Shader
     from ..measure.noise import WALKS, mean_f
@@ -47,8 +48,13 @@ def eval_(state, preset, wo, wi, shader, as_json):
             f, error, pdf = evaluated(Shader(gpu, model))
     else:
         f, error, pdf = evaluated(model)
+    accuracy = {"tolerance": 1e-8, "most": 1024}
     with seeded(0):
-        albedo = albedo_with_error(model, directions["wo"], tolerance=1e-8, most=1024)
+        if model.transmits:
+            found = shares(model, directions["wo"], **accuracy)
+            albedo = {name: Integral(found.value[i], found.error[i]) for i, name in enumerate("RT")}
+        else:
+            albedo = {"albedo": albedo_with_error(model, directions["wo"], **accuracy)}
     answer = {
         "material": state.material.name,
         "model": model.name(),
@@ -58,36 +64,37 @@ def eval_(state, preset, wo, wi, shader, as_json):
         "wi": {"theta": wi[0], "phi": wi[1], "direction": directions["wi"].tolist()},
         "f": np.asarray(f).tolist(),
         "pdf": float(pdf),
-        "albedo": albedo.value.tolist(),
     }
+    answer |= {name: part.value.tolist() for name, part in albedo.items()}
     errors = {}
     if model.stochastic:
-        errors = {"f": np.asarray(error).tolist(), "albedo": albedo.error.tolist()}
+        errors = {"f": np.asarray(error).tolist()} | {name: part.error.tolist() for name, part in albedo.items()}
         answer["standard_error"] = errors
         answer["walks"] = WALKS
     if as_json:
         click.echo(json.dumps(answer, indent=2, allow_nan=False))
         return
     digits = 9 if shader else 17
-    rows = {"f [1/sr]": answer["f"], "pdf [1/sr]": [answer["pdf"]], "albedo(wo)": answer["albedo"]}
     click.echo(
         f"{state.material.name} ({model.name()}), wo {wo[0]:g},{wo[1]:g}, wi {wi[0]:g},{wi[1]:g}, {answer['precision']}"
     )
-    for name, numbers in rows.items():
-        off = errors.get(name.split(" ")[0].removesuffix("(wo)"))
+    labels = {"f": "f [1/sr]", "pdf": "pdf [1/sr]", "albedo": "albedo(wo)", "R": "reflected", "T": "transmitted"}
+    for name in ("f", "pdf", *albedo):
+        numbers, off = np.atleast_1d(answer[name]), errors.get(name)
         if off is None:
-            click.echo(f"{name:<12}" + "  ".join(f"{n:.{digits}g}" for n in numbers))
+            words = (f"{n:.{digits}g}" for n in numbers)
         else:
-            click.echo(f"{name:<12}" + "  ".join(f"{n:.6g} ± {e:.1g}" for n, e in zip(numbers, off, strict=True)))
+            words = (f"{n:.6g} ± {e:.1g}" for n, e in zip(numbers, off, strict=True))
+        click.echo(f"{labels[name]:<13}" + "  ".join(words))
 
 
 @click.command(cls=Flagged, sections=("material", "directions"))
 @preset_argument
 @scene_option
 @click.option("--rays", default=96, show_default=True, help="Rays about the mirror direction, an even number.")
-@click.option("--nodes", default=49, show_default=True, help="Directions a ray, an odd number.")
+@click.option("--steps", default=49, show_default=True, help="Directions a ray, an odd number.")
 @output_option
-def table(state, preset, rays, nodes, output):
+def table(state, preset, rays, steps, output):
     """Write a table of f over directions to the light.
 
     The directions are on a grid that follows the lobe; FILE is a .csv, .npz or .exr.
@@ -96,8 +103,8 @@ def table(state, preset, rays, nodes, output):
     from ..gpu import offscreen
 
     with offscreen() as gpu:
-        save_table(gpu, state, output, rays, nodes)
-    click.echo(f"{output}: {rays} x {nodes} directions, theta_o = {state.directions.theta_o:g} deg")
+        save_table(gpu, state, output, rays, steps)
+    click.echo(f"{output}: {rays} x {steps} directions, theta_o = {state.directions.theta_o:g} deg")
 
 
 @click.command(cls=Flagged)

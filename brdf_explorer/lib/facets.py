@@ -17,6 +17,17 @@ from .transcendental import atan2_precise, exp_precise
 BLOCK = 1024
 """Pairs of directions at a time, whose nodes fit into a cache."""
 
+PARALLEL = 1e-15
+"""Length of a product of two directions below which these are one, and their plane is any."""
+UPRIGHT = 1e-12
+"""Squared length of wo - wi across h below which its direction is rounding."""
+LEAST_DENSITY = 1e-30
+"""Of D, under a logarithm."""
+LEAST_SHARPNESS = 1e-3
+"""Of twice kappa, under a fraction; below the least sharpness of a lobe."""
+NARROW = 0.3
+"""Of P over its value for a sharp lobe: where a wider cone ends rounding says, so nothing is cut."""
+
 
 def facets(wo, wi, alpha, kappa, node_scale, nodes, D, gauss):
     """The integral (...) for wo and wi (..., 3).
@@ -49,7 +60,7 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     u_x = np.where(z_between, np.cross(t, both_ways), np.cross(np.where(o_far, wo, wi), z))
     side = np.where(dot(np.where(z_between, z, np.where(o_far, wi, wo)), u_x) < 0, -1.0, 1.0)[:, None]
     size = length(u_x)[:, None]
-    u_x = side * np.where(size > 1e-15, quotient(u_x, size), [1.0, 0.0, 0.0])
+    u_x = side * np.where(size > PARALLEL, quotient(u_x, size), [1.0, 0.0, 0.0])
     size_corner = length(u_x / stretch)
     corner = u_x / stretch / size_corner[:, None]
     k_corner = np.maximum(dot(k, corner), 0.0)
@@ -64,27 +75,27 @@ def _block(wo, wi, alpha, kappa, D, scale, n, gauss):
     )
     t = t - dot(t, h)[:, None] * h
     other = np.where(np.abs(h[:, :1]) < 0.7, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
-    t = np.where(dot(t, t)[:, None] < 1e-12, other - dot(other, h)[:, None] * h, t)
+    t = np.where(dot(t, t)[:, None] < UPRIGHT, other - dot(other, h)[:, None] * h, t)
     t = normalize(t)
     a = c[:, None] * np.cross(h, t)
     size_n = length(h / stretch)
     n_h = h / stretch / size_n[:, None]
     rise = dot(n_h, corner)
-    reach = np.maximum(length(stretch * turned) / (stretch[:, 0] * stretch[:, 1] * size_n * size_corner), 1e-15)
+    reach = np.maximum(length(stretch * turned) / (stretch[:, 0] * stretch[:, 1] * size_n * size_corner), PARALLEL)
     across, u_y = normalize(stretch * turned), normalize(stretch * stretch * turned)
 
     ray_h = side * np.cross(corner, across)
     y_size = length(stretch * across)
     x_unit, y_unit = size_corner / size_n, 1 / (size_n * y_size)
     f_tx, f_ax, f_ty, f_ay = dot(t, u_x), dot(a, u_x), dot(t, u_y), dot(a, u_y)
-    fall = np.log(D(z, alpha) / np.maximum(D(h, alpha), 1e-30))
+    fall = np.log(D(z, alpha) / np.maximum(D(h, alpha), LEAST_DENSITY))
     level = 1 + 0.5 * n + np.minimum(2 * kappa * (t[:, 2] ** 2 + a[:, 2] ** 2), fall)
-    rho = level / np.maximum(2 * kappa, 1e-3)
+    rho = level / np.maximum(2 * kappa, LEAST_SHARPNESS)
     g_x, g_y = dot(u_x, h), dot(u_y, h)
     P = f_tx * f_tx + f_ax * f_ax - rho
     Q = f_tx * f_ty + f_ax * f_ay - rho * dot(u_x, u_y)
     S = f_ty * f_ty + f_ay * f_ay - rho
-    cone = (kappa > 0) & (P > 0.3 * (f_tx * f_tx + f_ax * f_ax))
+    cone = (kappa > 0) & (P > NARROW * (f_tx * f_tx + f_ax * f_ax))
     det = f_tx * f_ay - f_ax * f_ty
     mixed_t = f_tx[:, None] * u_y - f_ty[:, None] * u_x
     mixed_a = f_ax[:, None] * u_y - f_ay[:, None] * u_x

@@ -1,12 +1,12 @@
 """The geometry of refraction by a facet, and the share of the light that passes it.
 
 Of two directions one, wo, is above the surface and one, wt, below it; eta is the index below over that above.
-Walter et al. 2007, section 4: Eqs. 16, 17 and 40.
+Walter et al. 2007, section 4: Eqs. 16, 17, 21 and 40.
 """
 
 import numpy as np
 
-from .common import dot
+from .common import dot, length, split
 from .fresnel import eta2_cos2_t
 
 LEAST_EXCESS = 2.0**-16
@@ -44,6 +44,18 @@ def T_dielectric(cos_o, cos_t, eta):
     s = cos_o + eta * cos_t
     p = eta * cos_o + cos_t
     return 2 * eta * cos_o * cos_t * (1 / (s * s) + 1 / (p * p))
+
+
+def T_spread(m, eta):
+    """What facets of normal m, L long, pass, over the spread of what they refract: T cos_o cos_t / L^2; 0 where none refracts.
+
+    Eq. 21 is this times D G2, over both cosines; the same for both ways through.
+    """
+    L = length(m)
+    c = cos_refracted(L, eta)
+    passes = (split(m)[2] > 0) & np.all(c > 0, axis=-1)
+    above, below = split(np.where(passes[..., None], c, 1.0))
+    return np.where(passes, T_dielectric(above, below, eta) * (above / L) * (below / L), 0.0)
 
 
 def refracted(w, wm, eta):

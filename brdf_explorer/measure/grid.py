@@ -29,9 +29,12 @@ class Grid:
 
 
 def grid(wo, alpha, t, psi):
-    """The Grid of directions for a viewer wo (3,), slopes' scale alpha (2,), nodes t (n,) in [0, 1], psi (m,) in radians."""
+    """The Grid of directions for a viewer wo (3,) and slopes' scale alpha (2,).
+
+    Nodes t (n,), or (m, n), are in [0, 1], psi (m,) in radians.
+    """
     wo = np.asarray(wo, dtype=float)
-    psi, t = np.asarray(psi, dtype=float)[:, None], np.asarray(t, dtype=float)[None, :]
+    psi, t = np.asarray(psi, dtype=float)[:, None], np.atleast_2d(np.asarray(t, dtype=float))
     ax, ay = alpha
     cx, cy = ax * np.cos(psi), ay * np.sin(psi)  # slopes at rho = 1
     q = cx * cx + cy * cy

@@ -9,7 +9,7 @@ import numpy as np
 from ..model import Invalid
 from .bias import NONE, Bias, Estimate, mean_of, relative, root, surrounded
 from .error import METRICS, brightening
-from .questions import at, moved, noisy, place, settled
+from .questions import at, by_pictures, moved, noisy, place, settled
 
 ROUGH = (256, 4)
 """Places on the disc, and directions from each of two samplers in an environment, of the evaluation that rejects."""
@@ -105,7 +105,13 @@ class Judge:
 
     def check(self):
         """Raise Invalid where errors are not relative to anything; a generator."""
-        if self.split and (yield from self.biases[1].level()).value <= 0:
+        if not self.split:
+            return
+        if by_pictures(self.reference):
+            lit = (yield from self.shots.of(self.reference, SIDE, passes=EARLY))[..., :3].any()
+        else:
+            lit = (yield from self.biases[1].level()).value > 0
+        if not lit:
             raise Invalid("the sphere is black in this light: no error is relative to it")
 
     def only(self, combination, noise):
@@ -132,8 +138,8 @@ class Judge:
         return found
 
     def estimated(self, state):
-        """Whether f of a state or of the reference is an estimate: its noise is then unlike that of others."""
-        return state.model.stochastic or self.reference.model.stochastic
+        """Whether pictures alone can compare a state with the reference, whose noise may then be unlike."""
+        return by_pictures(state) or by_pictures(self.reference)
 
     def variance(self, state, passes=None):
         """The variance of a state's picture over the mean's square, an Estimate: half the square of what two differ by."""
@@ -217,7 +223,7 @@ class Judge:
             own = yield from self.variance(state)
             first = yield from self.variance(reference)
             return float(np.sqrt(own.value)), float(np.sqrt(first.value)), 0.0
-        if self.split and (state.model.stochastic or reference.model.stochastic):
+        if self.split and (by_pictures(state) or by_pictures(reference)):
             square, *_ = yield from self.apart(state, reference)
             own, true = self.shots.of(state, SIDE), self.shots.of(reference, SIDE)
             return root(square).value, 0.0, brightening((yield from own), (yield from true))

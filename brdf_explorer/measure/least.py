@@ -6,8 +6,9 @@ most of them; a finer one has to confirm, its own uncertainty included, or the s
 The metric "picture" is the RMSE over the disc, relative to the mean. Its square is a bias, which ladders of f have, and a
 variance, which samplers and sample counts have. The bias is found in float64, by measure/bias.py. Variance and bias together
 are found again in pictures by the shaders, twice with independent random numbers: each combination against the reference with
-the same numbers. Where f is itself an estimate, by the combination or by the reference, pictures alone judge, and the answer
-is for their size. Other metrics are of pictures; they see no ladder of noise, which then stays at its reference.
+the same numbers. Where f is itself an estimate, by the combination or by the reference, and where the sphere is a ball with
+light inside, pictures alone judge, and the answer is for their size. Other metrics are of pictures; they see no ladder of
+noise, which then stays at its reference.
 
 Work is done in generators that yield every few milliseconds, and whose result is what `return` gives.
 """
@@ -183,10 +184,6 @@ def least(gpu, state, tolerance=0.01, metric="picture", ladders=LADDERS, prices=
     prices: Prices instead of measured ones. Raises Invalid where nothing can be reduced or compared, or nothing is within
     the tolerance.
     """
-    if state.model.index() is not None:
-        ways = " and ".join(f"`chart {k.name} --preset PRESET`" for k in ladders.values() if compares_f(k, state))
-        way = f"; {ways} compare{'s' * (' and ' not in ways)} f of its methods" if ways else ""
-        raise Invalid(f"{state.material.name}: light inside a ball is not compared here{way}")
     asked, untried = questions(state, metric, ladders)
     if all(len(q.methods) < 2 for q in asked):
         raise Invalid(f"{state.material.name}: nothing to reduce: each question that it raises has one method only")
@@ -239,11 +236,6 @@ def least(gpu, state, tolerance=0.01, metric="picture", ladders=LADDERS, prices=
     if measured is not None:
         judge.answers[key] = chosen, answer
     return answer
-
-
-def compares_f(ladder, state):
-    """Whether a ladder's methods differ in f, and the question arises for a state."""
-    return ladder.measures == "f" and ladder.applies(state)
 
 
 def unanswerable(tolerance, own):

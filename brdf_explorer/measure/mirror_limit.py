@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..lib import facet_lobe, fresnel_one, slot
-from ..lib.common import above_horizon, split, vec
+from ..lib.common import above_horizon, quotient, split, vec
 from ..lib.facets import facets
 from ..lib.microfacet import cos_facet
 from ..models import MODELS
@@ -20,10 +20,24 @@ SHARPNESS = 10.0 ** np.arange(1, 6.5, 0.5)
 """The kappas that `differences` is measured at."""
 DIRECTIONS = 25
 """Directions to the light on each side of the mirror direction, for a difference."""
+STEEPEST = np.radians(80.0)
+"""From the normal to the last of these: nearer to the horizon lobes are cut off, however sharp. Of a viewer beyond, theta_o."""
 
 
-def has_facets(model):
-    return {"ndf", "shadowing", "smith", "fresnel"} <= set(model.choices())
+def without_facets(model):
+    """Why a model has no facets that could be sharpened until they are mirrors, or ""."""
+    if "ndf" not in model.choices():
+        return "it has no distribution of facets"
+    if model.transmits:
+        return "its facets let light through"
+    if not {"shadowing", "smith", "fresnel"} <= set(model.choices()):
+        return "its light meets several facets"
+    return ""
+
+
+def slope_scale(alpha, phi):
+    """Scale of the slopes of facets that are tilted within the plane of incidence, which lies at the azimuth phi."""
+    return float(1 / np.hypot(np.cos(phi) / alpha[0], np.sin(phi) / alpha[1]))
 
 
 def mirrors(model):
@@ -56,7 +70,7 @@ def sharpened(model, kappa, wo, wi, reflectance=True):
 def differences(model, theta_o, phi_o=0.0, kappas=SHARPNESS):
     """The largest |f - Torrance and Sparrow's f| in the plane of incidence over the largest f there, for each kappa (n,).
 
-    theta_o, phi_o: radians. Directions lie about the mirror direction, as close as alpha, and up to 80 degrees.
+    theta_o, phi_o: radians. Directions lie about the mirror direction, as close as alpha, up to STEEPEST.
     """
     return np.array([difference(mirrors(model), theta_o, phi_o, float(k)) for k in kappas])
 
@@ -65,9 +79,9 @@ def differences(model, theta_o, phi_o=0.0, kappas=SHARPNESS):
 @np.errstate(under="ignore")  # in the tails of a density
 def difference(model, theta_o, phi_o, kappa):
     """One of the `differences`, of a microfacet model."""
-    near = np.tan(np.linspace(0.0, 1.2, DIRECTIONS)) * max(model.alpha)
+    near = np.tan(np.linspace(0.0, 1.2, DIRECTIONS)) * slope_scale(model.alpha, phi_o)
     theta = np.concatenate([-theta_o - near[::-1], -theta_o + near[1:]])
-    theta = theta[np.abs(theta) < np.radians(80)]
+    theta = theta[np.abs(theta) <= max(STEEPEST, theta_o)]
     wo, wi = direction(theta_o, phi_o), direction(theta, phi_o)
     exact = model.f(wo, wi)
-    return float(np.max(np.abs(sharpened(model, kappa, wo, wi) - exact)) / exact.max())
+    return float(quotient(np.max(np.abs(sharpened(model, kappa, wo, wi) - exact)), exact.max()))

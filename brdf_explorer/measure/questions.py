@@ -92,7 +92,12 @@ def changes(ladder):
 
 def noisy(state):
     """Whether its picture is an estimate, which gets better with the passes."""
-    return surrounded(state.light) or state.model.stochastic
+    return surrounded(state.light) or by_pictures(state)
+
+
+def by_pictures(state):
+    """Whether pictures alone tell what its sphere shows: f is an estimate, or the sphere a ball with light inside."""
+    return state.model.stochastic or state.model.index() is not None
 
 
 def at(state, asked, combination):

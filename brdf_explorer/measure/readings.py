@@ -22,6 +22,8 @@ from . import half_space
 from .albedo import quadrature
 from .grid import direction
 from .microsurface import facets
+from .mirror_limit import without_facets
+from .steps import Steps
 
 MICROFACET = MODELS["microfacet"]
 EXAMPLES = {
@@ -74,34 +76,49 @@ class Found:
 
 @dataclass(frozen=True)
 class Reading:
-    """applies(model): why the question does not arise for a model, or "". find(model, theta_o, phi_o, effort) -> Found."""
+    """applies(model): why the question does not arise for a model, or "".
+
+    find(model, theta_o, phi_o, effort): a generator that yields None after each short step and returns the Found.
+    """
 
     applies: Callable
     find: Callable
 
 
 @lru_cache(maxsize=16)
-@np.errstate(under="ignore")  # in the tails of a density
+def finding(name, model, theta_o, phi_o, effort=FINE):
+    """The Steps to (Found, why it is of the example and not of this model, or ""), for a viewer's angles in radians."""
+
+    def steps():
+        why = READINGS[name].applies(model)
+        return (yield from READINGS[name].find(EXAMPLES[name] if why else model, theta_o, phi_o, effort)), why
+
+    return Steps(steps())
+
+
 def found(name, model, theta_o, phi_o, effort=FINE):
-    """(Found, why it is of the example and not of this model, or ""), for a viewer's angles in radians."""
-    reading = READINGS[name]
-    why = reading.applies(model)
-    return reading.find(EXAMPLES[name] if why else model, theta_o, phi_o, effort), why
+    """What `finding` finds."""
+    return finding(name, model, theta_o, phi_o, effort).all()
 
 
 # --- whether a question arises ---------------------------------------------------------------------------------------
 
 
-def has_facets(model):
-    return "" if isinstance(model, MICROFACET) else "no facets that are mirrors"
+def without_mirrors(model):
+    """Why facets of a model are not the lecture's: mirrors that light meets once."""
+    return "" if isinstance(model, MICROFACET) else without_facets(model) or "its facets are no mirrors"
 
 
 def is_stretched(model):
-    return has_facets(model) or ("alpha is the same along x and y" if model.alpha[0] == model.alpha[1] else "")
+    return without_mirrors(model) or ("alpha is the same along x and y" if model.alpha[0] == model.alpha[1] else "")
 
 
 def reflects_a_part(model):
-    return has_facets(model) or ("facets reflect all" if model.fresnel == "one" else "")
+    return without_mirrors(model) or ("facets reflect all" if model.fresnel == "one" else "")
+
+
+def is_of_gaussian_heights(model):
+    return without_mirrors(model) or ("" if model.ndf == "beckmann" else "slopes of GGX have no rms")
 
 
 def is_of_spheres(model):
@@ -109,7 +126,7 @@ def is_of_spheres(model):
 
 
 def is_dielectric(model):
-    return has_facets(model) or ("k is not 0" if max(model.k) > 0 else "")
+    return without_mirrors(model) or ("k is not 0" if max(model.k) > 0 else "")
 
 
 # --- what several readings need --------------------------------------------------------------------------------------
@@ -150,10 +167,13 @@ def energy(model, values, wo, n):
 
 
 def energies(model, values, phi_o, effort):
-    """The angles (n,) of viewers, degrees, and of each value(wo, wi) the directional albedo (n,)."""
+    """The angles (n,) of viewers, degrees, and of each value(wo, wi) the directional albedo (n,); a generator, as find."""
     theta = np.radians(to_grazing(effort[0]))
-    curves = np.transpose([energy(model, values, wo, effort[1]) for wo in direction(theta, phi_o)])
-    return np.degrees(theta), curves
+    albedos = []
+    for wo in direction(theta, phi_o):
+        albedos.append(energy(model, values, wo, effort[1]))
+        yield
+    return np.degrees(theta), np.transpose(albedos)
 
 
 def exchanged(wo, *parts):
@@ -163,11 +183,14 @@ def exchanged(wo, *parts):
 
 
 def by_albedo(model, about, f, theta_o, phi_o, effort, what, other):
-    """The Found of some f(wo, wi) by name, by their directional albedos, called `what`, and one more Cost."""
-    x, curves = energies(model, f.values(), phi_o, effort)
+    """The Found of some f(wo, wi) by name, by their directional albedos, called `what`, and one more Cost; as find."""
+    x, curves = yield from energies(model, f.values(), phi_o, effort)
     two = f["printed"], f["right"]
     at = {f"{what} E(ωo)": theta_o, f"{what} at 89°": GRAZING}
-    costs = [Cost(name, *energy(model, two, direction(theta, phi_o), effort[2])) for name, theta in at.items()]
+    costs = []
+    for name, theta in at.items():
+        costs.append(Cost(name, *energy(model, two, direction(theta, phi_o), effort[2])))
+        yield
     curves = dict(zip(f, curves, strict=True))
     return Found(model, about, "θo", x, f"{what} E(ωo)", curves, (*costs, other), np.degrees(theta_o))
 
@@ -200,6 +223,7 @@ def stretching(model, theta_o, phi_o, effort):
     x = to_grazing(effort[0])
     w = direction(np.radians(x), phi_o)
     curves = {name: 1 / (1 + isotropic_Lambda(model, w, s)) for name, s in factor.items()}
+    yield
     wo = direction(theta_o, phi_o)
     costs = [Cost("Λ(ωo)", *(float(isotropic_Lambda(model, wo, s)) for s in factor.values()))]
     f = [white(model, joint(model.shadowing, partial(isotropic_Lambda, model, x=s))) for s in factor.values()]
@@ -224,7 +248,7 @@ def correlated(model, theta_o, phi_o, effort):
     }
     f = {name: white(model, joined) for name, joined in G.items()}
     exchange = exchanged(direction(theta_o, phi_o), G["printed"], G["right"])
-    return by_albedo(model, roughness(model), f, theta_o, phi_o, effort, "white furnace", exchange)
+    return (yield from by_albedo(model, roughness(model), f, theta_o, phi_o, effort, "white furnace", exchange))
 
 
 def fresnel(model, theta_o, phi_o, effort):
@@ -237,14 +261,14 @@ def fresnel(model, theta_o, phi_o, effort):
     f = {"printed": lambda wo, wi: unpainted(wo, wi) * F(wo[..., 2]), "right": coloured(model)}
     wo = direction(theta_o, phi_o)
     exchange = exchanged(wo, lambda o, i: F(o[..., 2]), lambda o, i: F(cos_facet(o, i)))
-    return by_albedo(model, roughness(model) + index(model), f, theta_o, phi_o, effort, "albedo", exchange)
+    return (yield from by_albedo(model, roughness(model) + index(model), f, theta_o, phi_o, effort, "albedo", exchange))
 
 
 def mirrors(model, theta_o, phi_o, effort):
     """Facets that are mirrors: with the f_mf that the lecture prints, without F, or with F."""
     f = {"printed": white(model, joint(model.shadowing, Lambda(model))), "right": coloured(model)}
     peak = Cost("f(n, n) [1/sr]", *(float(value(NORMAL, NORMAL)) for value in f.values()))
-    return by_albedo(model, roughness(model) + index(model), f, theta_o, phi_o, effort, "albedo", peak)
+    return (yield from by_albedo(model, roughness(model) + index(model), f, theta_o, phi_o, effort, "albedo", peak))
 
 
 AUTOCORRELATIONS = {
@@ -268,6 +292,7 @@ def slope(model, theta_o, phi_o, effort):
     area = D(wm, np.array([along, along])) * wm[..., 2] * solid_angle
     steep = length(wm[..., :2]) / wm[..., 2]
     mean, square = float(np.sum(area * steep)), float(np.sum(area * steep**2))
+    yield
     alphas = {"printed": along * scale[0] / scale[1], "right": along, "α = mean slope": mean}
     x = np.linspace(0.0, min(np.degrees(np.arctan(3 * along)), 89.0), effort[0])
     wm, wo = direction(np.radians(x), 0.0), direction(theta_o, 0.0)
@@ -294,6 +319,7 @@ def fourier(model, theta_o, phi_o, effort):
         return [half_space.f(wo, direction(theta_i, phi), s, doubled=doubled) for doubled in (False, True)]
 
     curves = dict(zip(("printed", "right"), both(theta_o, np.radians(x)), strict=True))
+    yield
     costs = [
         Cost("f at θi = 85°, φ = 180° [1/sr]", *map(float, both(np.radians(85.0), np.pi))),
         Cost("f at θi = θo, φ = 180° [1/sr]", *map(float, both(theta_o, np.pi))),
@@ -335,6 +361,7 @@ def slab(model, theta_o, phi_o, effort):
         T = 1 - R
         return T * R * R * R * T * T, T * R * R * R * R * T
 
+    yield
     R = float(F_dielectric(np.cos(theta_o), eta))
     reflected, transmitted = slab_series(R, PASS)
     costs = (
@@ -348,9 +375,9 @@ def slab(model, theta_o, phi_o, effort):
 
 READINGS = {
     "stretching": Reading(is_stretched, stretching),
-    "correlated": Reading(has_facets, correlated),
+    "correlated": Reading(without_mirrors, correlated),
     "fresnel": Reading(reflects_a_part, fresnel),
-    "slope": Reading(has_facets, slope),
+    "slope": Reading(is_of_gaussian_heights, slope),
     "mirrors": Reading(reflects_a_part, mirrors),
     "fourier": Reading(is_of_spheres, fourier),
     "slab": Reading(is_dielectric, slab),

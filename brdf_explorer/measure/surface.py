@@ -23,14 +23,18 @@ import numpy as np
 from ..lib import slot
 from ..lib.common import quotient, vec
 from ..lib.transcendental import erfcx_precise, exp_precise
+from .steps import Steps
 
 LAWS = {"gaussian": "beckmann", "ellipsoids": "ggx", "brushed": "beckmann"}
 """The distribution of normals of each surface."""
 
+HORIZON = 1e-3
+"""Cosine below which a direction is taken for one below the horizon."""
 PERIOD = 64.0  # of a Gaussian surface, in tau
 FINE = 8  # its samples a tau: facets between them have an alpha that is 0.2 % small
 CAPS = 12.0  # period of the ellipsoids, in tau
 GRID = 16  # places a tau where an ellipsoid may stand
+NOISE = 0.05  # of a gap, in tau: what chance adds where the next ellipsoid is chosen
 SMALLEST = 0.08  # radius of the smallest ellipsoid, in tau
 CAST = 48  # samples a tau of ellipsoids that rays are cast over
 ROWS = 64  # that rays are cast over, of a surface
@@ -137,7 +141,7 @@ def gaussian_profiles(rng, count, n, period):
 def ellipsoids(rng, n, period):
     """The Surface of half ellipsoids on a grid of n x n places: the largest that has room, at random, until all are small."""
     pitch = period / n
-    noise = 0.05 * rng.random((n, n))
+    noise = NOISE * rng.random((n, n))
     gap = np.ones((n, n))  # radius of the cap that has room at each place
     score = gap + noise
     nearest = np.zeros((n, n), dtype=int)
@@ -147,7 +151,7 @@ def ellipsoids(rng, n, period):
         radius = gap[y, x]
         if radius < SMALLEST:
             break
-        reach = int(np.ceil((2 * radius + 0.06) / pitch))  # no gap is larger than radius + 0.05
+        reach = int(np.ceil((2 * radius + NOISE) / pitch)) + 1  # no gap is larger than radius + NOISE
         offset = np.arange(-reach, reach + 1)
         rows, columns = np.ix_((y + offset) % n, (x + offset) % n)
         away = pitch * np.hypot(offset[:, None], offset) - radius
@@ -203,7 +207,7 @@ class Patch:
     def seen(self, theta):
         """Share of each segment (n, n - 1) of the square that a direction at theta, in radians, sees; 0 below the horizon."""
         n = len(self.rows)
-        if np.cos(theta) < 1e-3:
+        if np.cos(theta) < HORIZON:
             return np.zeros((n, n - 1))
         return seen(self.rows, self.pitch, (np.sin(theta), np.cos(theta)), False)[:, n - 1 : 2 * n - 2]
 
@@ -339,18 +343,33 @@ def profiles(kind, seed):
 
 
 @lru_cache(maxsize=128)
-def measured_once(kind, seed):
-    """(alpha, slopes, visible, lit) of one surface."""
-    heights, pitch, slopes = profiles(kind, seed)
-    rough = slopes[heights[:, :-1] > 0] if kind == "ellipsoids" else slopes
-    density = np.histogram(slopes, BINS)[0] / slopes.size / np.diff(BINS)
-    visible, lit = np.transpose([cast(heights, pitch, a) for a in A])
-    return slope_scale(LAWS[kind], rough), density, visible, lit
+def measuring(kind, seed):
+    """The Steps to (alpha, slopes, visible, lit) of one surface."""
+
+    def steps():
+        surface(kind, seed)
+        yield
+        heights, pitch, slopes = profiles(kind, seed)
+        yield
+        rough = slopes[heights[:, :-1] > 0] if kind == "ellipsoids" else slopes
+        density = np.histogram(slopes, BINS)[0] / slopes.size / np.diff(BINS)
+        shares = []
+        for a in A:
+            yield
+            shares.append(cast(heights, pitch, a))
+        return slope_scale(LAWS[kind], rough), density, *np.transpose(shares)
+
+    return Steps(steps())
+
+
+def seeds(seed, count):
+    """Of `count` surfaces: that of `seed`, and others."""
+    return [(seed, i) if i else seed for i in range(count)]
 
 
 def measured(kind, seed, count):
     """Measured of `count` surfaces of a kind: that of `seed` and others."""
-    found = [measured_once(kind, seed if i == 0 else (seed, i)) for i in range(count)]
+    found = [measuring(kind, one).all() for one in seeds(seed, count)]
     columns = []
     for values in zip(*found, strict=True):
         error = np.std(values, axis=0, ddof=1) / np.sqrt(count) if count > 1 else np.nan * np.asarray(values[0])

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..lib import slot
-from ..lib.common import HORIZON, dot, length, mirror, split, vec
+from ..lib.common import HORIZON, dot, length, mirror, quotient, split, vec
 from ..lib.fresnel import F_dielectric
 from ..lib.microfacet import cos_facet
 from ..lib.random import third
-from ..lib.refraction import T_dielectric, apart_from_one, cos_refracted, refracted, sum_refracted, upward
+from ..lib.refraction import T_dielectric, T_spread, apart_from_one, cos_refracted, refracted, sum_refracted, upward
 from ..model import Model, choice, param
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -106,36 +106,29 @@ class Dielectric(Model):
 
     def passing(self, wo, wi):
         """Of facets that refract wi to wo: T D cos cos / L^2, the same with wo and wi exchanged."""
-        D, T, spread = self._refracting(wo, wi)
-        return T * spread * D
+        D, share, _ = self._refracting(wo, wi)
+        return share * D
 
     def _refracting(self, wo, wi):
-        """Of facets that refract wi to wo: D, 1 - F, and cos cos / L^2; all 0 where there are none."""
+        """Of facets that refract wi to wo: D, T_spread, and its T; all 0 where there are none."""
         eta, up = apart_from_one(self.eta), wo[..., 2:] > 0
         sum = sum_refracted(np.where(up, wo, wi), np.where(up, wi, wo), eta)
         wm = np.where(np.asarray(eta > 1)[..., None], -sum, sum)
-        seen = wm[..., 2] > 0
-        wm = np.where(seen[..., None], wm, UP)
-        L = length(wm)
-        c = cos_refracted(L, eta)
-        seen &= np.all(c > 0, axis=-1)
-        above, below = split(np.where(seen[..., None], c, 1.0))
-        found = (
-            slot("ndf", self.ndf).D(wm, np.array(self.alpha)),
-            T_dielectric(above, below, eta),
-            above / L * (below / L),
-        )
-        return tuple(np.where(seen, part, 0.0) for part in found)
+        share = T_spread(wm, eta)
+        passes = share > 0
+        D = slot("ndf", self.ndf).D(np.where(passes[..., None], wm, UP), np.array(self.alpha))
+        above, below = split(np.where(passes[..., None], cos_refracted(length(wm), eta), 1.0))
+        return np.where(passes, D, 0.0), share, np.where(passes, T_dielectric(above, below, eta), 0.0)
 
     def factors(self, wo, wi):
         """D, G, F or 1 - F, and the Jacobian, whose product is f, off the horizon: name -> (...), of F (..., 3)."""
         wo, wi = np.broadcast_arrays(np.asarray(wo, dtype=float), np.asarray(wi, dtype=float))
         o, i, crossing = upward(wo), upward(wi), crosses(wo, wi)
-        D, T, spread = self._refracting(wo, wi)
+        D, share, T = self._refracting(wo, wi)
         n = np.where(wo[..., 2] > 0, 1.0, self.eta_seen(wi))
         F = np.where(crossing, T, F_dielectric(cos_facet(o, i), self.eta_seen(wo)))
         D = np.where(crossing, D, slot("ndf", self.ndf).D(o + i, np.array(self.alpha)))
-        jacobian = np.where(crossing, n * n * spread, 0.25) / (o[..., 2] * i[..., 2])
+        jacobian = np.where(crossing, n * n * quotient(share, T), 0.25) / (o[..., 2] * i[..., 2])
         return {"D": D, "G": self.G2(wo, wi), "F": F[..., None] * np.ones(3), "jacobian": jacobian}
 
     def G2(self, wo, wi):

@@ -7,11 +7,11 @@ lowest facet up.
 
 import numpy as np
 
-from ..lib.common import HORIZON, INV_PI, dot, length, mirror, mix, quotient, split, vec
+from ..lib.common import HORIZON, INV_PI, dot, mirror, mix, quotient, split, vec
 from ..lib.fresnel import F_dielectric
 from ..lib.microfacet import cos_facet
 from ..lib.random import third
-from ..lib.refraction import T_dielectric, cos_refracted, refracted, sum_refracted
+from ..lib.refraction import T_spread, refracted, sum_refracted
 from ..lib.transcendental import exp_precise
 from ..lib.walk import depth_below, flight, passage
 from ..lib.warp import cosine_hemisphere
@@ -47,13 +47,9 @@ def passing(material, w, wt, above):
     eta = np.array(material.index())
     sum = sum_refracted(np.where(above[:, None], w, wt), np.where(above[:, None], wt, w), eta)
     wm = np.where(((eta > 1) == above)[:, None], -sum, sum)
-    L = length(sum)
-    found = np.zeros(L.shape)
-    seen = (L > 0) & (wm[:, 2] > 0)
-    c = cos_refracted(np.where(seen, L, 1.0), eta)
-    seen &= np.all(c > 0, axis=-1)
-    c, L = c[seen], L[seen]
-    found[seen] = T_dielectric(c[:, 0], c[:, 1], eta) * (c[:, 0] / L) * (c[:, 1] / L) * material.D(wm[seen])
+    found = T_spread(wm, eta)
+    passes = found > 0
+    found[passes] *= material.D(wm[passes])
     return found
 
 

@@ -151,7 +151,8 @@ class Canvas:
             imgui.pop_style_var()
             imgui.pop_style_color(2)
         elif self.picture and self.picture.note:
-            chip(self.picture.note, (origin.x + points(8), origin.y + room.y - points(8)), self.name == "sphere")
+            foot = (origin.x + points(8), origin.y + room.y - points(8))
+            chip(self.picture.note, foot, room.x - points(16), self.name == "sphere")
 
     def buttons(self, state, view, memory, export):
         """The view's options and saving the picture: at the end of the panel's tab bar, or in the corner of a panel without."""
@@ -207,17 +208,27 @@ def handle(state, view, origin, pixel, size):
     drawing.add_circle(at, radius, u32(colors["accent"] if hot else "#ffffff"), 0, points(1.8))
 
 
-def chip(words, foot, over_picture):
+def chip(words, foot, room, over_picture):
     """A line of small text whose box has its lower left corner at `foot`; dark glass behind it over a picture."""
     drawing = imgui.get_window_draw_list()
     height = points(SMALL - 0.5)
+    pad = points(6)
     imgui.push_font(None, SMALL - 0.5)
+    words = cut(words, room - 2 * pad)
     width = imgui.calc_text_size(words).x
     imgui.pop_font()
-    pad = points(6)
     top = foot[1] - height - pad
     if over_picture:
         box = (foot[0] + width + 2 * pad, foot[1])
         drawing.add_rect_filled((foot[0], top - pad / 2), box, u32("#000000", 0.45), points(6))
     color = u32("#ffffff", 0.9) if over_picture else u32("muted")
     drawing.add_text(fonts["text"], height, (foot[0] + pad, top), color, words)
+
+
+def cut(words, room):
+    """The words, or what of them is no wider than the room in the font in use."""
+    shown = words
+    while shown and imgui.calc_text_size(shown).x > room:
+        words = words[:-1]
+        shown = words.rstrip(" ,;") + "…" if words else ""
+    return shown

@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 from imgui_bundle.immapp import icons_fontawesome_6 as icons
 
 from ..lib.random import seeded
-from ..model import Choice, Param, declared
+from ..model import Choice, declared
 from ..models import MODELS
 from ..state import Material, presets
 from ..views.picture import PALETTES
@@ -18,7 +18,8 @@ from .theme import SMALL, points, u32, vec
 
 # unit vectors in general position, far from the normal: what matters to f or pdf changes its value at one of them
 WO = np.array([0.96, 0.0, 0.28])
-WI = np.array([[0.0, 0.8, 0.6], [-0.576, 0.768, 0.28], [-0.96, 0.0, 0.28]])
+WI = np.array([[0.0, 0.8, 0.6], [-0.576, 0.768, 0.28], [-0.96, 0.0, 0.28], [0.0, 0.96, -0.28]])
+WALKS = 16  # estimates of a stochastic f at each, of which some meet facets more than once
 FIRST = 4  # frames that are not kept waiting for it
 
 
@@ -54,19 +55,18 @@ def material(state, memory):
 @cache
 def matters(cls, choices):
     """Names of the parameters that change f or pdf when these choices are made; with F = 1, say, eta and k do not."""
+    wi = np.repeat(WI, WALKS, axis=0) if cls.stochastic else WI
 
     def values(model):
         with seeded(1):  # a stochastic f by the same random numbers
-            return np.column_stack([model.f(WO, WI), model.pdf(WO, WI)])
+            return np.column_stack([model.f(WO, wi), model.pdf(WO, wi)])
 
-    middle = {}
-    for name, p in declared(cls, Param).items():
-        middle[name] = p.low**0.1 * p.high**0.9 if p.scale == "log" else p.low + type(p.low)(0.6 * (p.high - p.low))
-    model = cls(**dict(choices), **middle)
+    model = cls(**dict(choices))  # at its defaults all that is chosen shows
+    before = values(model)
     names = set()
     for name, declaration in declared(cls).items():
         others = declaration.options if isinstance(declaration, Choice) else (declaration.low, declaration.high)
-        if any(not np.array_equal(values(replace(model, **{name: other})), values(model)) for other in others):
+        if any(not np.array_equal(values(replace(model, **{name: other})), before) for other in others):
             names.add(name)
     return names
 

@@ -114,7 +114,7 @@ def set_sizes():
     style.window_padding = (16, 14)
     style.frame_padding = (9, 6)
     style.item_spacing = (8, 8)
-    style.item_inner_spacing = (6, 6)
+    style.item_inner_spacing = (2, 6)  # also between tabs, of which there are many
     style.frame_rounding = style.grab_rounding = style.tab_rounding = style.selectable_rounding = 6
     style.menu_item_rounding = 5
     style.popup_rounding = 8

@@ -11,6 +11,7 @@ from ..model import Choice, Param, Text, declared
 from .theme import SMALL, fonts, points, u32, vec
 
 LABELS = 104  # points of the column of labels
+GAP = 6  # points between a widget and a button of its own
 GREEK = {"theta": "θ", "phi": "φ", "alpha": "α", "eta": "η", "sigma": "σ", "tau": "τ"}
 UNITS = {"deg": "°", "W/m2": " W/m²"}
 CHANNELS = ("red", "green", "blue")
@@ -107,7 +108,7 @@ def numbers(declaration, value, key, memory):
     """Sliders for a number, or for each of two or three; those of equal values may move as one."""
     if declaration.size == 1:
         return slider("##0", declaration, value, imgui.get_content_region_avail().x)
-    gap = imgui.get_style().item_inner_spacing.x
+    gap = points(GAP)
     side = imgui.get_frame_height()
     if declaration.color:
         value = swatch(declaration, value)
@@ -278,7 +279,7 @@ def segments(options, words, sizes, value, width):
 def line(value, key, memory, doc):
     """A file's name, which takes effect when editing ends; `memory["browse"]` asks the window for a dialog."""
     side = imgui.get_frame_height()
-    imgui.set_next_item_width(imgui.get_content_region_avail().x - side - imgui.get_style().item_inner_spacing.x)
+    imgui.set_next_item_width(imgui.get_content_region_avail().x - side - points(GAP))
     text = memory.get(("text", *key), value)
     _, text = imgui.input_text("##text", text)
     if imgui.is_item_active():
@@ -287,7 +288,7 @@ def line(value, key, memory, doc):
         value = text
     elif imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
         tooltip(sentence(doc))
-    imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
+    imgui.same_line(0, points(GAP))
     if icon(icons.ICON_FA_FOLDER_OPEN, "browse"):
         memory["browse"] = key
     hint("Choose a file")

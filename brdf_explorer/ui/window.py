@@ -21,6 +21,11 @@ from .theme import points, vec
 from .thumbnails import Thumbnails
 
 TITLE = "BRDF Explorer"
+DOCKS = {  # the views beside that of the sphere, where all others are
+    "Right": ("lobe", "hemisphere", "sampling"),
+    "Right foot": ("polar", "factors", "facets", "readings"),
+}
+FRONT = {"sphere", "lobe", "polar"}
 SIZE = (1280, 800)
 BAR = 2.8  # height of the toolbar, in heights of type
 COLUMN = 348  # points of the inspector's column
@@ -44,6 +49,7 @@ class Window:
         self.dropped = []
         self.gpu, self.thumbnails = None, None
         self.theme = None
+        self.front = set()  # views that are seen
         self.behind = set()  # views that are to come in front of the others in their place
         self.fresh, self.width = True, 0  # whether no layout was saved, and the width that it was made for
 
@@ -97,17 +103,10 @@ class Window:
             split("MainDockSpace", "Right", direction.right, 0.46),
             split("Right", "Right foot", direction.down, 0.5),
         ]
-        places = {
-            "lobe": "Right",
-            "polar": "Right foot",
-            "factors": "Right foot",
-            "facets": "Right foot",
-            "hemisphere": "Right",
-        }
         panels = [("Material", "Inspector", self.material), ("Scene", "Inspector", self.scene)]
         panels.append(("Presets", "Inspector", self.presets))
-        for name, view in VIEWS.items():
-            panels.append((view.title, places.get(name, "MainDockSpace"), lambda name=name: self.view(name)))
+        for dock, names in docks().items():
+            panels += [(VIEWS[name].title, dock, lambda name=name: self.view(name)) for name in names]
         windows = [hello_imgui.DockableWindow(*panel) for panel in panels]
         for window in windows:
             window.can_be_closed = window.call_begin_end = False
@@ -143,7 +142,7 @@ class Window:
         splits[0].ratio = min(points(COLUMN) / self.window_width(), 0.5)
         layout.docking_splits = splits
         layout.layout_reset = True
-        self.behind = {"sphere", "lobe", "polar"}
+        self.behind = set(FRONT)
 
     # --- a frame ---------------------------------------------------------------------------------------------------------
 
@@ -226,14 +225,16 @@ class Window:
     def presets(self):
         if begin("Presets"):
             self.thumbnails = self.thumbnails or Thumbnails(self.gpu)
-            self.thumbnails.next_frame()
+            # before they are shown: a frame holds the textures that it shows
+            self.thumbnails.advance(not any(self.canvases[name].busy for name in self.front))
+            self.gpu.ctx.screen.use()
             self.state = inspector.browse(self.state, self.memory, self.preset, self.thumbnail)
+            if self.thumbnails.busy:
+                hello_imgui.request_refresh()
         imgui.end()
 
     def thumbnail(self, name, side):
         drawn = self.thumbnails.get(name, self.theme, int(side * imgui.get_io().display_framebuffer_scale.x))
-        if self.thumbnails.spent:
-            hello_imgui.request_refresh()
         return drawn and imgui.ImTextureRef(drawn.color_attachments[0].glo)
 
     def view(self, name):
@@ -243,6 +244,7 @@ class Window:
         shown = imgui.begin(VIEWS[name].title, None, flags)[0]
         imgui.pop_style_color()
         imgui.pop_style_var()
+        (self.front.add if shown else self.front.discard)(name)
         if name in self.behind and imgui.is_window_docked():
             self.behind.remove(name)
             imgui.set_window_focus()
@@ -290,7 +292,14 @@ class Window:
         ]
         side, space = imgui.get_frame_height(), points(14)
         count, breaks = sum(b is not None for b in buttons), buttons.count(None)
-        imgui.same_line(imgui.get_window_width() - count * (side + points(2)) - breaks * space - points(10))
+        views = f"Views  {icons.ICON_FA_CHEVRON_DOWN}"
+        width = imgui.calc_text_size(views).x + 2 * imgui.get_style().frame_padding.x
+        right = imgui.get_window_width() - count * (side + points(2)) - breaks * space - points(10)
+        imgui.same_line(right - width - space)
+        if imgui.button(f"{views}###views", (width, side)):
+            imgui.open_popup("views")
+        self.views_menu(imgui.get_item_rect_min().x)
+        imgui.same_line(right)
         for button in buttons:
             if button is None:
                 imgui.same_line(0, space)
@@ -301,6 +310,20 @@ class Window:
             widgets.hint(words, *[keys] * bool(keys))
             imgui.same_line(0, points(2))
         self.menu()
+
+    def views_menu(self, left):
+        """All views, by where they are: one that is clicked comes to the front."""
+        imgui.set_next_window_pos((left, imgui.get_window_height()))
+        if imgui.begin_popup("views"):
+            for i, names in enumerate(docks().values()):
+                if i:
+                    imgui.separator()
+                for name in names:
+                    view = VIEWS[name]
+                    if imgui.menu_item(view.title, "", name in self.front)[0]:
+                        self.behind.add(name)
+                    widgets.hint(" ".join(view.__doc__.split("\n\n")[0].split()))
+            imgui.end_popup()
 
     def menu(self):
         imgui.set_next_window_pos((imgui.get_window_width() - points(10), imgui.get_window_height()), 0, (1.0, 0.0))
@@ -450,6 +473,12 @@ class Window:
     def switch_theme(self):
         other = "light" if self.state.look.theme == "dark" else "dark"
         self.state = replace(self.state, look=replace(self.state.look, theme=other))
+
+
+def docks():
+    """Names of the views by their place in the layout."""
+    beside = {name for names in DOCKS.values() for name in names}
+    return {"MainDockSpace": tuple(name for name in VIEWS if name not in beside)} | DOCKS
 
 
 def begin(label):

@@ -14,7 +14,7 @@ from ..model import Invalid, choice, param
 from .axes import Axes, Axis
 from .develop import develop
 from .diagram import QUANTITIES, number
-from .drawing import Drawing, Drawn, cut
+from .drawing import Drawing, Drawn, cut, nothing
 from .lines import draw_lines
 from .lobe import Camera, stage
 from .pace import in_turn
@@ -77,11 +77,8 @@ class Compare(Drawn):
     def drawings(self, gpu, state, size, scale=1.0):
         b = self.against(state)
         if b is None:
-            draw = Drawing(size, scale, state.look.theme)
             words = "Nothing to compare with:", "add a material to the list, or a copy of this one"
-            for line, text in enumerate(words):
-                draw.text(text, (size[0] / 2, size[1] / 2 + (9 - 18 * line) * scale), "muted")
-            yield draw, "", True
+            yield nothing(size, scale, state.look.theme, *words), "", True
             return
         states = state, replace(state, active=b)
         shown, drawn, since = {}, None, 0.0

@@ -136,6 +136,15 @@ def wrapped(texts, room, size):
     return lines
 
 
+def nothing(size, scale, theme, *texts):
+    """A Drawing of a view that has nothing to show: why, in lines about its middle."""
+    draw = Drawing(size, scale, theme)
+    lines = wrapped(texts, size[0] / scale - 24, 12.0)
+    for i, line in enumerate(lines):
+        draw.text(line, (size[0] / 2, size[1] / 2 + 18 * ((len(lines) - 1) / 2 - i) * scale), "muted")
+    return draw
+
+
 def draw_raster(gpu, target, raster):
     program = gpu.program(assemble("views/raster.frag"))
     picture = {"picture": raster.target.color_attachments[0]}

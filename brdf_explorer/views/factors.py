@@ -7,10 +7,10 @@ import numpy as np
 from ..lib.srgb import luminance
 from ..measure.grid import direction
 from ..measure.microsurface import projected_area
-from ..model import choice, param
+from ..model import Invalid, choice, param
 from .axes import Axes, Axis
 from .diagram import number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, nothing
 from .picture import Curves
 from .polar import NODES
 from .table import tables
@@ -23,6 +23,7 @@ FACTORS = {  # name -> words of the legend, and what they are where there is lit
     "jacobian": ("1 / (4 cos θo cos θi)", "Jacobian"),
     "product": ("product = f  [1/sr]", "f [1/sr]"),
 }
+BELOW = 0.3  # of each curve where f is largest, on each side of the surface: where the axis ends at the latest
 WIDE, NARROW = 158, 74  # points of a column of the legend
 
 
@@ -43,7 +44,7 @@ class Factors(Drawn):
     axis: str = choice(
         "log", ("log", "linear"), "scale of the values; on a logarithmic one a product is a sum of heights"
     )
-    decades: int = param(5, 1, 12, "decades that a logarithmic axis shows")
+    decades: int = param(5, 1, 12, "decades that a logarithmic axis shows; more where a factor lies lower")
 
     def shows(self, state):
         return (self, state.material, state.directions, state.look.theme)
@@ -60,23 +61,28 @@ class Factors(Drawn):
         return theta, values | {"F": luminance(values["F"]), "product": luminance(f)}
 
     def table_of(self, gpu, state):
-        """The factors as Curves over theta in degrees."""
+        """The factors as Curves over theta in degrees. Raises Invalid where f is no product of them."""
+        if not hasattr(state.model, "factors"):
+            raise Invalid(" ".join(none(state)))
         theta, values = self.curves(gpu, state)
         return Curves("theta_i [deg]", np.degrees(theta), values)
 
     def drawings(self, gpu, state, size, scale=1.0):
+        if not hasattr(state.model, "factors"):
+            yield nothing(size, scale, state.look.theme, *none(state)), "", True
+            return
         draw = Drawing(size, scale, state.look.theme)
         width, height = size
-        if not hasattr(state.model, "factors"):
-            draw.text("No factors to show:", (width / 2, height / 2 + 9 * scale), "muted")
-            draw.text(f"{state.model.name()} is no product of D, G and F", (width / 2, height / 2 - 9 * scale), "muted")
-            yield draw, "", True
-            return
         theta, values = self.curves(gpu, state)
         shown = {name: values[name] for name in FACTORS if getattr(self, name) == "on"}
         # the Jacobian grows without bound at the horizon, and does not decide the range
         top = 1.3 * max([1.0, *(float(v.max()) for name, v in shown.items() if name != "jacobian")])
-        low = top / 10**self.decades if self.axis == "log" else 0.0
+        low = 0.0
+        if self.axis == "log":
+            sides = (side for side in (theta < -np.pi / 2, theta >= -np.pi / 2) if side.any())
+            peaks = [np.argmax(np.where(side, values["product"], -1.0)) for side in sides]
+            known = (BELOW * float(v[at]) for v in shown.values() for at in peaks if v[at] > 0)
+            low = min([top / 10**self.decades, *known])
         y = Axis(low, top, "", self.axis)
         short = width < (52 + 3 * WIDE) * scale
         columns = max(int((width / scale - 52) // (NARROW if short else WIDE)), 1) if short else 3
@@ -114,6 +120,11 @@ class Factors(Drawn):
         """Luminance of f in the mirror direction."""
         wo = direction(np.radians(state.directions.theta_o), np.radians(state.directions.phi_o))
         return float(luminance(alone(state.model).f(wo, wo * [-1, -1, 1])))
+
+
+def none(state):
+    """Lines that say that a material has no factors, and why."""
+    return "No factors to show:", f"{state.material.name} ({state.model.name()}) is no product of D, G and F"
 
 
 def alone(model):

@@ -22,7 +22,7 @@ from ..measure.microsurface import D_visible, facets, projected_area
 from ..model import choice, param
 from .axes import Axis, colorbar
 from .diagram import number
-from .drawing import Drawing, Drawn
+from .drawing import Drawing, Drawn, nothing
 from .pace import Pace, chords, in_turn
 from .picture import rgb
 from .table import progressive
@@ -130,7 +130,7 @@ class Map:
         target = self.gpu.target(self.name, self.size, 4, "f1")
         uniforms = {"side": float(self.side), "decades": float(view.decades), "paper": rgb(paper)} | self.place
         uniforms["share"] = 1 / most if most > 0 else 0.0
-        program = self.gpu.program(assemble("views/hemisphere_paint.frag", {"radius": view.scale}))
+        program = self.gpu.program(assemble("views/hemisphere_paint.frag", {"radius": view.colors}))
         self.gpu.draw(program, target, uniforms, {"values": self.values.color_attachments[0]})
         return target
 
@@ -142,7 +142,7 @@ class Hemisphere(Drawn):
     title = "Hemisphere"
 
     quantity: str = choice("pdf", QUANTITIES, "what the colours show: f and pdf over ωi, D and D_visible over ωm")
-    scale: str = choice("log", ("log", "linear"), "scale of the colours")
+    colors: str = choice("log", ("log", "linear"), "scale of the colours")
     decades: int = param(4, 1, 8, "decades that a logarithmic scale shows below the peak")
     samples: int = param(200, 0, 2000, "directions drawn by the model's sampler; over ωm, their half vectors")
 
@@ -224,11 +224,8 @@ class Hemisphere(Drawn):
     def drawings(self, gpu, state, size, scale=1.0):
         model = state.model
         if self.over == "wm" and "ndf" not in model.choices():
-            draw = Drawing(size, scale, state.look.theme)
             words = f"No {self.quantity} to show:", f"{model.name()} has no distribution of normals"
-            for line, text in enumerate(words):
-                draw.text(text, (size[0] / 2, size[1] / 2 + (9 - 18 * line) * scale), "muted")
-            yield draw, "", True
+            yield nothing(size, scale, state.look.theme, *words), "", True
             return
         wo = direction(np.radians(state.directions.theta_o), np.radians(state.directions.phi_o))
         tables = progressive(gpu, model, state.directions, passes=PASSES) if self.estimated(model) else None
@@ -348,7 +345,7 @@ class Hemisphere(Drawn):
         draw.over()
         self.names(draw, center, radius, wo, phi, up, state.model.index())
         if place.bar is not None:
-            logarithmic = self.scale == "log" and most > 0
+            logarithmic = self.colors == "log" and most > 0
             low = most / 10**self.decades if logarithmic else 0.0
             axis = Axis(low, most or 1.0, scale="log" if logarithmic else "linear")
             colorbar(maps[up, "disc"].gpu, draw, place.bar, axis)

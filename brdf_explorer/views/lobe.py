@@ -5,16 +5,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..glsl import assemble
+from ..lib.colormap import viridis
 from ..lib.srgb import luminance
 from ..measure.grid import flat_refraction
 from ..model import param
 from .diagram import QUANTITIES, Diagram, apart, arrow, nice_step, number, powers_below, radius
+from .drawing import cut
 from .lines import Stroke, draw_lines
 from .picture import PALETTES, R2, Label, Picture, rgb
 from .table import NODES, RAYS, noise, progressive
 
 PASSES = 8  # jittered drawings whose mean has smooth edges
 BAR = 76  # points at the right for the legend
+THIN = 3  # points across, below which a lobe is drawn as a line
+AXIS = 24  # pieces of that line, each of one colour
 ARROW = 1.12  # length of the arrows, in radii of the disc
 
 
@@ -50,8 +54,9 @@ class Lobe(Diagram):
         target = gpu.target("lobe", size, 4, "f1")
         camera = Camera(self, size, scale, both=len(values) > 1)
         below, above, labels = stage(camera, values[0].wo, colors, state.model.index())
-        outlines = [self.outline(camera, t, share, colors) for t in values]
-        above.append(outlines[0])
+        outlines, widths = zip(*(self.outline(camera, t, share, colors) for t in values), strict=True)
+        above += outlines[0]
+        labels += thin(size, scale, colors, widths)
         over = gpu.program(assemble("views/over.frag"))
         surfaces = [self.surfaces(gpu.beside(f"lobe {i}"), t, camera, share) for i, t in enumerate(values)]
         picture = None
@@ -61,10 +66,10 @@ class Lobe(Diagram):
                 yield picture
                 continue
             target.clear(*rgb(colors["paper"]), 1.0)
-            for layer, _ in far:  # seen through the surface
+            for (layer, _), lines in zip(far, outlines[1:], strict=True):  # seen through the surface
                 picture = {"picture": layer.color_attachments[0]}
                 gpu.draw(over, target, {"share": 1.0}, picture, blend="premultiplied")
-                draw_lines(gpu, target, outlines[1:])
+                draw_lines(gpu, target, lines)
             draw_lines(gpu, target, below)
             gpu.draw(over, target, {"share": 1.0}, {"picture": near.color_attachments[0]}, blend="premultiplied")
             draw_lines(gpu, target, above)
@@ -77,10 +82,22 @@ class Lobe(Diagram):
         return float((luminance(values.f) * self.factor(values.grid.wi)).max())
 
     def outline(self, camera, values, share, colors):
-        """The Stroke along the slice of a Table through the plane of incidence."""
-        _, wi, f = values.plane()
-        profile = luminance(f) * self.factor(wi) * share
-        return camera.stroke(wi * radius(profile, self.radius, self.decades)[:, None], colors["ink"], 1.0, 0.45)
+        """Strokes along the slice of a Table through the plane of incidence, and None.
+
+        Of a lobe too thin to be seen a line along its axis, too, in the map's colours, and its width at half the peak, radians.
+        """
+        theta, wi, f = values.plane()
+        value = luminance(f) * self.factor(wi)
+        profile = radius(value * share, self.radius, self.decades)
+        strokes = [camera.stroke(wi * profile[:, None], colors["ink"], 1.0, 0.45)]
+        at = int(np.argmax(profile))
+        if profile[at] <= 0 or width(theta, profile) * profile[at] * camera.unit >= THIN * camera.scale:
+            return strokes, None
+        heights = np.linspace(0.0, profile[at], AXIS + 1)
+        for low, high in zip(heights, heights[1:], strict=False):
+            color = "#" + "".join(f"{c:02x}" for c in np.round(255 * viridis(np.array(high))).astype(int))
+            strokes.append(camera.stroke([low * wi[at], high * wi[at]], color, 3.5))
+        return strokes, width(theta, value)
 
     def surfaces(self, gpu, values, camera, share, paint="value", uniforms=None):
         """The lobe's triangles as (framebuffer of colour and coverage, done): one drawing at first, at last the mean of several.
@@ -127,6 +144,29 @@ class Lobe(Diagram):
             y = size[1] - heights[i]
             labels.append(Label(number(values[i]), left + 16 * scale, y, colors["muted"], (0.0, 0.5), 11.5))
         return labels
+
+
+def width(theta, v):
+    """How far the first and last angles theta (n,) are apart at which v (n,) is half of its largest, on lines through it."""
+    half = 0.5 * v.max()
+    first, last = np.flatnonzero(v >= half)[[0, -1]]
+    before, after = max(first - 1, 0), min(last + 1, len(v) - 1)
+    ends = (np.interp(half, v[[out, at]], theta[[out, at]]) for out, at in ((before, first), (after, last)))
+    return float(abs(np.subtract(*ends)))
+
+
+def thin(size, scale, colors, widths):
+    """Labels that say how wide the lobes are, of a width in radians each, that are drawn as lines; None is one that is not."""
+    known = [f"{number(np.degrees(angle), 2)}°" for angle in widths if angle is not None]
+    if not known:
+        return []
+    lines = "lines" if len(known) > 1 else "a line"
+    words = f"too thin to be seen, drawn as {lines}: {' and '.join(known)} wide at half the peak"
+    return [
+        Label(
+            cut(words, size[0] / scale - 24, 11.5), 12 * scale, size[1] - 14 * scale, colors["muted"], (0.0, 0.5), 11.5
+        )
+    ]
 
 
 def described(values):

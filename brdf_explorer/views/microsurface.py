@@ -1,11 +1,27 @@
 """The microsurface: rough ground with the material's slopes, which of it light and viewer reach, and what Smith says of it."""
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..glsl import assemble
-from ..measure.surface import BINS, G1, LAWS, P2, A, along, first_hit, lit, measured, patch, surface
+from ..measure.surface import (
+    BINS,
+    G1,
+    HORIZON,
+    LAWS,
+    P2,
+    A,
+    along,
+    first_hit,
+    lit,
+    measured,
+    measuring,
+    patch,
+    seeds,
+    surface,
+)
 from ..model import Invalid, choice, declared, param
 from .axes import Axes, Axis
 from .diagram import arrow, nice_step, number
@@ -68,39 +84,32 @@ class Microsurface(Drawn):
         width, height = size
         wide, high = (n >= room * scale for n, room in zip(size, ROOM, strict=True))
         foot, top = (24 * scale if height > 200 * scale else 0.0), height - 26 * scale
-        middle = width * 0.55
+
+        def box(left, low, right, high):
+            """Of shares of the picture's width, and of the height between foot and top."""
+            y = (foot + share * (top - foot) for share in (low, high))
+            return (left * width, next(y), right * width, next(y))
+
+        whole = box(0, 0, 1, 1)
         if self.show == "statistics":
             if wide:
-                middle = width / 2
-                return {"slopes": (0, foot, middle, top), "visibility": (middle, foot, width, top)}
+                return {"slopes": box(0, 0, 0.5, 1), "visibility": box(0.5, 0, 1, 1)}
             if high:
-                level = foot + 0.6 * (top - foot)
-                return {"visibility": (0, foot, width, level), "slopes": (0, level, width, top)}
-            return {"visibility": (0, foot, width, top)}
+                return {"visibility": box(0, 0, 1, 0.6), "slopes": box(0, 0.6, 1, 1)}
+            return {"visibility": whole}
         if self.show != "all":
-            return {self.show: (0, foot, width, top)}
-        level = foot + 0.5 * (top - foot)
-        if wide and high:
-            upper = foot + 0.6 * (top - foot)
-            return {
-                "surface": (0, level, middle, top),
-                "profile": (0, foot, middle, level),
-                "slopes": (middle, upper, width, top),
-                "visibility": (middle, foot, width, upper),
-            }
+            return {self.show: whole}
+        if wide and high:  # below the visibility stands why it is not Smith's
+            left = {"surface": box(0, 0.5, 0.55, 1), "profile": box(0, 0, 0.55, 0.5)}
+            return left | {"slopes": box(0.55, 0.6, 1, 1), "visibility": box(0.55, 0, 1, 0.6)}
         if wide:
-            return {"surface": (0, foot, width / 2, top), "profile": (width / 2, foot, width, top)}
+            return {"surface": box(0, 0, 0.5, 1), "profile": box(0.5, 0, 1, 1)}
         if height >= TALL[1] * scale and width >= TALL[0] * scale:
-            upper, lower = foot + 0.68 * (top - foot), foot + 0.38 * (top - foot)
-            return {
-                "surface": (0, upper, width, top),
-                "profile": (0, lower, width, upper),
-                "slopes": (0, foot, 0.46 * width, lower),
-                "visibility": (0.46 * width, foot, width, lower),
-            }
+            upper = {"surface": box(0, 0.68, 1, 1), "profile": box(0, 0.38, 1, 0.68)}
+            return upper | {"slopes": box(0, 0, 0.46, 0.38), "visibility": box(0.46, 0, 1, 0.38)}
         if high:
-            return {"surface": (0, level, width, top), "profile": (0, foot, width, level)}
-        return {"profile": (0, foot, width, top)}
+            return {"surface": box(0, 0.5, 1, 1), "profile": box(0, 0, 1, 0.5)}
+        return {"profile": whole}
 
     def pivot(self, state, size, scale=1.0):
         """The place (2,) about which a drag turns the viewer, in pixels from the bottom left."""
@@ -116,7 +125,13 @@ class Microsurface(Drawn):
             yield draw, "", True
             return
         boxes = self.layout(size, scale)
-        for cut, target, found, done in self.stages(gpu, ground, boxes, state.look.theme):
+        draw, note = None, ""
+        for stage in self.stages(gpu, ground, boxes, state.look.theme):
+            if stage is None:
+                if gpu.pace is not None:
+                    yield draw, note, False
+                continue
+            cut, target, found, done = stage
             draw = Drawing(size, scale, state.look.theme)
             say(draw, self.heading(ground, size[0] / scale), (12 * scale, size[1] - 15 * scale), "ink", (0.0, 0.5))
             if "surface" in boxes:
@@ -135,8 +150,10 @@ class Microsurface(Drawn):
             yield draw, note, done
 
     def stages(self, gpu, ground, boxes, theme):
-        """(Cut, its picture, Measured, done): few heights, then all of them, smooth edges, and one surface more each time."""
+        """(Cut, its picture, Measured, done): few heights, then all of them, smooth edges, and one surface more each time.
 
+        None is a step between two of these.
+        """
         left, bottom, right, top = boxes.get("surface", (0, 0, 1, 1))
         size = (max(round(right - left), 1), max(round(top - bottom), 1))
         targets = [gpu.target(f"microsurface.{n}", size, 4, *of) for n, of in TARGETS.items()]
@@ -144,16 +161,29 @@ class Microsurface(Drawn):
         def relief(cut, i=0, count=1):
             return self.relief(gpu, targets, boxes["surface"], cut, theme, i, count) if "surface" in boxes else None
 
+        surface(ground.kind, ground.seed)
+        yield None
         cut = ground.cut(self.extent, COARSE)
         yield cut, relief(cut), None, False
         cut = ground.cut(self.extent, FINE)
+        yield None
         target = relief(cut)
-        for i in range(PASSES if target else 0):
-            yield cut, target, None, False
-            relief(cut, i, PASSES)
+        yield None
+        passes = PASSES if target else 0
         most = SURFACES if {"slopes", "visibility"} & set(boxes) else 0
-        yield cut, target, None, most == 0
-        for count in range(1, most + 1):
+        yield cut, target, None, passes + most == 0
+        for i in range(passes):
+            relief(cut, i, PASSES)
+            yield None
+        if passes:
+            yield cut, target, None, most == 0
+        for count, seed in enumerate(seeds(ground.seed, most), 1):
+            one, start = measuring(ground.kind, seed), time.perf_counter()
+            while one.result is None:
+                one.step()
+                if gpu.pace is not None and time.perf_counter() - start >= gpu.pace:
+                    yield None
+                    start = time.perf_counter()
             yield cut, target, measured(ground.kind, ground.seed, count), count == most
 
     def table_of(self, gpu, state):
@@ -264,14 +294,15 @@ class Microsurface(Drawn):
         x = (left + right) / 2 + unit * (np.arange(n) - (n - 1) / 2) * cut.pitch
         y = bottom + 30 * scale + unit * (z - z.min())
         line = np.stack([x, y], axis=-1)
-        sky = (left + 4 * scale, bottom, right - 4 * scale, top - 22 * scale)
         ground = cut.ground
 
         # the legend, with shares of the whole surface
         shares = cut.shares()
+        plain = shares[0] > 0.995
+        sky = (left + 4 * scale, bottom, right - 4 * scale, top - (36 if plain else 22) * scale)
         at = left + 12 * scale
         for (name, color), share in zip(CLASSES, shares, strict=True):
-            words = f"{name} {100 * share:.0f} %"
+            words = f"{name} {percent(share)}"
             extent = width_of(words, 12.0) * scale
             if at + extent < right:
                 say(draw, words, (at, top - 10 * scale), color, (0.0, 0.5))
@@ -285,7 +316,7 @@ class Microsurface(Drawn):
             for theta, free, color in ((ground.theta_i, "green", "red"), (ground.theta_o, "accent", "blue")):
                 w = np.array([np.sin(theta), np.cos(theta)])
                 slope = (z[i + 1] - z[i]) / cut.pitch
-                if w[1] < 1e-3 or w[1] - slope * w[0] <= 0:
+                if w[1] < HORIZON or w[1] - slope * w[0] <= 0:
                     continue
                 hit = first_hit(row, cut.pitch, n - 1 + i, w)
                 if hit is None:
@@ -305,6 +336,9 @@ class Microsurface(Drawn):
         if len(ground.pointers()) == 1:
             middle = np.array([(left + right) / 2, top - 30 * scale])
             say(draw, "the light is below the horizon", middle, "muted")
+        elif plain:
+            words = "nearly nothing is hidden: rougher ground or lower directions hide more"
+            say(draw, words, (left + 12 * scale, top - 26 * scale), "muted", (0.0, 0.5), 11.0)
         self.draw_reflection(draw, line, cut, sky)
         self.draw_bar(draw, (left + 12 * scale, bottom + 12 * scale), unit, right - left - 24 * scale)
 
@@ -321,6 +355,7 @@ class Microsurface(Drawn):
         else:
             off = np.zeros(n - 1)
         reached = (cut.lit[0] > 0.99) & (cut.seen[0] > 0.99) & (np.abs(place) < 0.4)
+        # the best turned one near the middle: the whole width counts as a tilt of 0.3; one out of reach only if all are
         i = int(np.argmin(off + 0.3 * np.abs(place) + 10.0 * ~reached))
         foot = line[i : i + 2].mean(axis=0)
         for name, color, theta in pointers:
@@ -377,7 +412,7 @@ class Ground:
 
     def pointers(self):
         """(name, colour, angle) of the viewer, and of the light if it is above the horizon."""
-        light = [("ωi", "green", self.theta_i)] * int(np.cos(self.theta_i) >= 1e-3)
+        light = [("ωi", "green", self.theta_i)] * int(np.cos(self.theta_i) >= HORIZON)
         return [("ωo", "accent", self.theta_o), *light]
 
     def cut(self, extent, n):
@@ -398,6 +433,11 @@ class Cut:
         """Shares of the area, projected along the normal, that are visible, shadowed, masked and both."""
         dark, hidden = 1 - self.lit, 1 - self.seen
         return [float(np.mean(s)) for s in (self.lit * self.seen, dark * self.seen, self.lit * hidden, dark * hidden)]
+
+
+def percent(share):
+    """A share in percent, also of what is rare."""
+    return f"{100 * share:.0f} %" if share >= 0.01 else f"{number(100 * share, 1)} %"
 
 
 def corners(share):
@@ -476,7 +516,11 @@ def draw_visibility(draw, box, ground, found):
     say(draw, "facing facets: G1", (axes.box[0], top - 14 * scale), "accent", (0.0, 0.5))
     say(draw, "area", (axes.box[2], top - 14 * scale), "blue", (1.0, 0.5))
     theta_o = np.degrees(ground.theta_o)
-    axes.line([theta_o, theta_o], [0.0, 1.0], "muted", 1.0)
+    corner = axes.place(0.0, 0.0) + np.array([8, 12]) * scale
+    legend = ("dots: rays over heights", "lines: Smith")
+    crossed = axes.place(theta_o, 0.0)[0] < corner[0] + (width_of(legend[0], 11.0) + 4) * scale
+    low = 38 * scale / (axes.box[3] - axes.box[1]) if crossed else 0.0  # from over the words on
+    axes.line([theta_o, theta_o], [min(low, 1.0), 1.0], "muted", 1.0)
     say(draw, "θo", axes.place(theta_o, 1.0) + [0, 9 * scale], "muted", size=11.0)
     draw.over()
     theta = np.radians(np.linspace(0.0, 90.0, 181))
@@ -489,9 +533,8 @@ def draw_visibility(draw, box, ground, found):
                 draw.dot(axes.place(at, m), color, 5.0)
                 if found.count > 1:
                     axes.line([at, at], [m - e, m + e], color, 1.0)
-    corner = axes.place(0.0, 0.0) + np.array([8, 12]) * scale
-    say(draw, "lines: Smith", corner + [0, 15 * scale], "muted", (0.0, 0.5), 11.0)
-    say(draw, "dots: rays over heights", corner, "muted", (0.0, 0.5), 11.0)
+    for i, line in enumerate(legend):
+        say(draw, line, corner + [0, 15 * i * scale], "muted", (0.0, 0.5), 11.0)
     for i, line in enumerate(words):
         at = (left + 14 * scale, bottom + (15 * (len(words) - i) - 6) * scale)
         draw.text(line, at, "ink", (0.0, 0.5), 11.5)

@@ -19,7 +19,7 @@ from .table import LONGEST, PASSES, progressive
 MARGIN = 44  # points around the half disc, for the angles
 FOOT = 46  # points below it, for values and a note; half of that below a whole disc
 NODES = 385  # of each half of a slice: many more than the lobe has, so that no tip has corners in a large picture
-FEW = 97  # the same of estimates, which are the better for being few
+FEW = 145  # the same of estimates, which are the better for being few
 LINE = 18  # points from one line of the legend to the next
 CHANNELS = ("red", "green", "blue")
 WORDS = 12.5  # height of the legend's letters, points

@@ -1,10 +1,11 @@
 """The readings: where a formula of the lecture errs or can be read in two ways, both, and what the wrong one costs."""
 
+import time
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..measure.readings import COARSE, FINE, READINGS, found
+from ..measure.readings import COARSE, FINE, READINGS, finding, found
 from ..model import choice
 from .axes import Axes, Axis
 from .diagram import number
@@ -119,21 +120,29 @@ class Readings(Drawn):
     def shows(self, state):
         return (self, state.material, state.directions, state.look.theme)
 
-    def found(self, state, effort=FINE):
-        """(measure.readings.Found, why it is of an example or "")."""
+    def question(self, state, effort=FINE):
+        """The arguments of measure.readings.found and finding."""
         at = state.directions
-        return found(self.reading, state.model, float(np.radians(at.theta_o)), float(np.radians(at.phi_o)), effort)
+        return self.reading, state.model, float(np.radians(at.theta_o)), float(np.radians(at.phi_o)), effort
 
     def table_of(self, gpu, state):
         """Both readings, and others beside them, as Curves over an angle in degrees."""
-        f = self.found(state)[0]
+        f = found(*self.question(state))[0]
         return Curves(f"{f.angle} [deg]", f.x, f.curves)
 
     def drawings(self, gpu, state, size, scale=1.0):
+        draw, start = None, time.perf_counter()
         for effort in (COARSE, FINE):
+            one = finding(*self.question(state, effort))
+            while one.result is None:
+                one.step()
+                if gpu.pace is not None and time.perf_counter() - start >= gpu.pace:
+                    yield draw, "", False
+                    start = time.perf_counter()
             draw = Drawing(size, scale, state.look.theme)
-            self.page(draw, state, *self.found(state, effort))
+            self.page(draw, state, *one.result)
             yield draw, "", effort is FINE
+            start = time.perf_counter()
 
     def page(self, draw, state, f, example):
         """Names of all readings, then words and curves of this one."""

@@ -211,11 +211,28 @@ def header(draw, state, found, colors):
         draw.text(words, (12 * s, draw.size[1] - (y - 6) * s), color, (0.0, 0.5), points)
     x, y = 12.0, y + 18
     for name, color in colors.items():
-        if x > 12 and x + width_of(name, 12.5) > width - 8:
+        words = called(name)
+        if len(colors) == 1:
+            words += ", the only one"
+        same = [other for other in list(colors)[: list(colors).index(name)] if alike(found, other, name)]
+        if same and width >= 520:
+            words += f" (varies as {same[0]})"
+        if x > 12 and x + width_of(words, 12.5) > width - 8:
             x, y = 12.0, y + 17
-        draw.text(name, (x * s, draw.size[1] - (y - 6) * s), color, (0.0, 0.5), 12.5)
-        x += width_of(name, 12.5) + 14
+        draw.text(words, (x * s, draw.size[1] - (y - 6) * s), color, (0.0, 0.5), 12.5)
+        x += width_of(words, 12.5) + 14
     return y + 8
+
+
+def called(name):
+    """A sampler's name in words."""
+    return "its sampler" if name == "its own" else name
+
+
+def alike(found, a, b):
+    """Whether two samplers have the same variance, so that the line of one covers that of the other."""
+    a, b = found.variance(a), found.variance(b)
+    return abs(a - b) <= 1e-6 * max(a, b)
 
 
 def axes_in(draw, box, name, x, y, **frame):
@@ -296,7 +313,9 @@ def draw_variance(draw, box, state, found, colors):
             row |= {"ns": number(1e9 * cost.median, 2), "product": number(1e9 * cost.median * variance, 2)}
         row["lost"] = f"{100 * np.mean(runs.weight == 0):.3g} %"
         row["largest"] = number(runs.weight.max(), 2)
-        if runs.counts[-1] >= 16 * FIRST:
+        if variance == 0:
+            row["slope"] = "no error"
+        elif runs.counts[-1] >= 16 * FIRST:
             fit = slope(runs.counts, runs.estimates, found.moments.mean)
             row["slope"] = f"{fit.value:.2f} ± {fit.error:.2f}".replace("-", "−")
         else:
@@ -316,7 +335,7 @@ def draw_variance(draw, box, state, found, colors):
         for i, row in enumerate(rows):
             draw.text(row[column], (x, top - 32 * s - (i + 1) * step), "ink", (1.0, 0.5), 12.0)
     for i, (name, color) in enumerate(colors.items()):
-        draw.text(name, (left + 12 * s, top - 32 * s - (i + 1) * step), color, (0.0, 0.5), 12.0)
+        draw.text(called(name), (left + 12 * s, top - 32 * s - (i + 1) * step), color, (0.0, 0.5), 12.0)
     foot = top - 40 * s - (len(rows) + 1) * step
     for words in (MEANINGS[column] for column, _ in columns):
         if foot - 8 * s > box[1] and right - left > 330 * s:
@@ -338,7 +357,7 @@ def draw_histogram(draw, box, state, found, colors):
     theta_i, mass = found.expected or (np.zeros(0), np.zeros(0))
     by_pdf = np.histogram(np.degrees(theta_i), edges, weights=mass)[0]
     y = Axis(0.0, 1.25 * max(drawn.max(), by_pdf.max(), 1e-9))
-    axes = axes_in(draw, box, "histogram", Axis(edges[0], edges[-1], f"θi of {found.own}, degrees"), y)
+    axes = axes_in(draw, box, "histogram", Axis(edges[0], edges[-1], f"θi by {called(found.own)}, degrees"), y)
     for a, b, v in zip(edges, edges[1:], drawn, strict=False):
         (x0, y0), (x1, y1) = axes.place([a, b], [0.0, v])
         draw.fill((x0 + 0.5, y0 + 1, x1 - 0.5, max(y1, y0 + 1)), faint(draw, colors[found.own]))
@@ -350,6 +369,9 @@ def draw_histogram(draw, box, state, found, colors):
         least = min(test.p for test in found.tests.values())
         sidak = -np.expm1(len(found.tests) * np.log1p(-min(least, 1 - 1e-16)))
         words = f"χ² p = {number(p, 2)}; of all {number(sidak, 2)} (Šidák)"
+        right, top, _ = (*axes.box[2:], draw.over())
+        clear = (right - (8 + width_of(words, TICK)) * s, top - 17 * s, right, top - 1)
+        draw.fill(clear, "paper")  # no grid through the words
         draw.text(words, (axes.box[2] - 4 * s, axes.box[3] - 9 * s), "muted", (1.0, 0.5), TICK)
 
 

@@ -104,7 +104,7 @@ def progressive(gpu, model, directions, rays=RAYS, nodes=NODES, most=2, passes=L
     found = []
     for side in sides(wo, model.slopes(), model.index())[:most]:
         psi = plane_of_incidence(phi, side.alpha) + 2 * np.pi * np.arange(rays) / rays
-        g = grid(side.wo, side.alpha, t, psi)
+        g = grid(side.wo, side.alpha, t if rays > 2 else even(side, psi, nodes), psi)
         g = Grid(side.turned(g.wi), g.density)
         texture = gpu.texture(np.concatenate([g.wi, np.ones((rays, nodes, 1))], axis=-1))
         target = gpu.ctx.framebuffer([gpu.ctx.texture((nodes, rays), 4, dtype="f4")])
@@ -123,11 +123,23 @@ def progressive(gpu, model, directions, rays=RAYS, nodes=NODES, most=2, passes=L
             texels = np.concatenate([mean, np.zeros((rays, nodes, 1))], axis=-1)
             one.target.color_attachments[0].write(texels.astype(np.float32).tobytes())
             found[i] = replace(one, error=error, walks=walks * running.count)
-        done = n + 1 == passes or n > 0 and noise(found) <= NOISE
+        done = n + 1 == passes or noise(found) <= NOISE
         yield [replace(one) for one in found], done
 
 
+def even(side, psi, nodes):
+    """Nodes t (rays, nodes) of a slice: half of them follow the lobe, as even t do, and half are spread over the angle, so that a
+    curve has no corners where a lobe is far wider than it was taken for.
+    """
+    t = np.linspace(0.0, EDGE, 8 * nodes)
+    turned = np.linalg.norm(np.diff(grid(side.wo, side.alpha, t, psi).wi, axis=1), axis=-1).cumsum(axis=1)
+    share = 0.5 * (t / EDGE + np.pad(turned / turned[:, -1:], ((0, 0), (1, 0))))
+    return np.stack([np.interp(np.linspace(0.0, 1.0, nodes), one, t) for one in share])
+
+
 def noise(found):
-    """The standard error of f in Tables, the root of its mean square, over the largest value."""
+    """The standard error of f in Tables, the root of its mean square, over the largest value; infinite where nothing was found,
+    which may be there, and after one pass.
+    """
     peak = max(float(one.f.max()) for one in found)
-    return float(np.sqrt(np.mean([np.mean(one.error**2) for one in found]))) / peak if peak > 0 else 0.0
+    return float(np.sqrt(np.mean([np.mean(one.error**2) for one in found]))) / peak if peak > 0 else np.inf

@@ -23,6 +23,12 @@
 float D(vec3 wm, vec2 alpha);
 vec2 gauss(int i);
 
+const float PARALLEL = 1e-15;  // length of a product of two directions below which these are one, and their plane is any
+const float UPRIGHT = 1e-12;  // squared length of wo - wi across h below which its direction is rounding
+const float LEAST_DENSITY = 1e-30;  // of D, under a logarithm
+const float LEAST_SHARPNESS = 1e-3;  // of twice kappa, under a fraction; below the least sharpness of a lobe
+const float NARROW = 0.3;  // of P over its value for a sharp lobe: where a wider cone ends rounding says, so nothing is cut
+
 // node_scale: of the slot facets; nodes: the number of those that gauss gives, NODES.
 float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int nodes) {
   vec3 stretch = vec3(node_scale * alpha, 1.0);
@@ -39,7 +45,7 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
   vec3 u_x = z_between ? cross(t, both_ways) : cross(off_o > off_i ? wo : wi, z);
   float side = dot(z_between ? z : off_o > off_i ? wi : wo, u_x) < 0.0 ? -1.0 : 1.0;
   float size = length(u_x);
-  u_x = size > 1e-15 ? u_x * (side / size) : vec3(side, 0.0, 0.0);
+  u_x = size > PARALLEL ? u_x * (side / size) : vec3(side, 0.0, 0.0);
   float size_corner = length(u_x / stretch);
   vec3 corner = u_x / stretch / size_corner;
   float k_corner = max(dot(k, corner), 0.0);
@@ -53,7 +59,7 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
   float size_n = length(h / stretch);
   vec3 turned = z_between && obtuse ? normalize(t) : side * cross(h, u_x);  // where t is nearly level its z cancels in the product
   t -= dot(t, h) * h;
-  if (dot(t, t) < 1e-12) {
+  if (dot(t, t) < UPRIGHT) {
     t = abs(h.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
     t -= dot(t, h) * h;
   }
@@ -61,7 +67,7 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
   vec3 a = c * cross(h, t);
   vec3 n_h = h / stretch / size_n;
   float rise = dot(n_h, corner);
-  float reach = max(length(stretch * turned) / (stretch.x * stretch.y * size_n * size_corner), 1e-15);
+  float reach = max(length(stretch * turned) / (stretch.x * stretch.y * size_n * size_corner), PARALLEL);
   vec3 across = normalize(stretch * turned), u_y = normalize(stretch * stretch * turned);
   vec3 ray_h = side * cross(corner, across);
 
@@ -71,11 +77,11 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
   float x_unit = size_corner / size_n, y_unit = 1.0 / (size_n * y_size);
   vec2 f_x = vec2(dot(t, u_x), dot(a, u_x)), f_y = vec2(dot(t, u_y), dot(a, u_y));
   float level = 1.0 + 0.5 * float(nodes);
-  level += min(2.0 * kappa * (t.z * t.z + a.z * a.z), log_precise(D(z, alpha) / max(D(h, alpha), 1e-30)));
-  float rho = level / max(2.0 * kappa, 1e-3);
+  level += min(2.0 * kappa * (t.z * t.z + a.z * a.z), log_precise(D(z, alpha) / max(D(h, alpha), LEAST_DENSITY)));
+  float rho = level / max(2.0 * kappa, LEAST_SHARPNESS);
   float u_xy = dot(u_x, u_y), g_x = dot(u_x, h), g_y = dot(u_y, h);
   float P = dot(f_x, f_x) - rho, Q = dot(f_x, f_y) - rho * u_xy, S = dot(f_y, f_y) - rho;
-  bool cone = kappa > 0.0 && P > 0.3 * dot(f_x, f_x);  // a wider one ends where rounding says
+  bool cone = kappa > 0.0 && P > NARROW * dot(f_x, f_x);
   float det = f_x.x * f_y.y - f_x.y * f_y.x;
   vec3 mixed_t = f_x.x * u_y - f_y.x * u_x, mixed_a = f_x.y * u_y - f_y.y * u_x, normal = cross(u_x, u_y);
   float A = rho * (dot(mixed_t, mixed_t) + dot(mixed_a, mixed_a)) - det * det - rho * rho * dot(normal, normal);
@@ -106,7 +112,8 @@ float facets(vec3 wo, vec3 wi, vec2 alpha, float kappa, float node_scale, int no
     float bent = sin(omega), straight = cos(omega);
     vec3 ray = straight * ray_h + bent * across;
     float psi_k = atan2_precise(k_corner, -dot(k, ray));
-    vec3 flat_h = max(straight / reach * vec3(p_h, q_h, k_h) + bent * vec3(p_across, q_across, k_across), vec3(0.0, 0.0, -2.0));
+    vec3 flat_h = straight / reach * vec3(p_h, q_h, k_h) + bent * vec3(p_across, q_across, k_across);
+    flat_h.xy = max(flat_h.xy, vec2(0.0));  // n_k has another term, and is not below 0 with that
     vec2 foot = vec2(reach, rise * straight);  // where the ray passes n_h, by the projection
     float psi_h = atan2_precise(foot.x, foot.y), size_h = length(foot);
     float first = -psi_h, last = psi_k - psi_h;  // of psi - psi_h

@@ -1,5 +1,5 @@
 // The geometry of refraction by a facet, and the share of the light that passes it. Of two directions one, wo, is above the surface
-// and one, wt, below it; eta is the index below over that above. Walter et al. 2007, section 4: Eqs. 16, 17 and 40.
+// and one, wt, below it; eta is the index below over that above. Walter et al. 2007, section 4: Eqs. 16, 17, 21 and 40.
 #include "lib/fresnel.glsl"
 
 // Nearer to 1 refraction would be a delta: float32 has no direction between its lobe's peak and its foot.
@@ -33,6 +33,15 @@ float T_dielectric(float cos_o, float cos_t, float eta) {
   float s = cos_o + eta * cos_t;
   float p = eta * cos_o + cos_t;
   return 2.0 * eta * cos_o * cos_t * (1.0 / (s * s) + 1.0 / (p * p));
+}
+
+// What facets of normal m, L long, pass, over the spread of what they refract: T cos_o cos_t / L^2; 0 where none refracts. Eq. 21 is
+// this times D G2, over both cosines; the same for both ways through.
+float T_spread(vec3 m, float eta) {
+  float L = length(m);
+  vec2 c = cos_refracted(L, eta);
+  if (m.z <= 0.0 || c.x <= 0.0 || c.y <= 0.0) return 0.0;
+  return T_dielectric(c.x, c.y, eta) * (c.x / L) * (c.y / L);
 }
 
 // The direction into which w is refracted by a facet of normal wm, w . wm > 0; eta is the index of the other side over that of w.

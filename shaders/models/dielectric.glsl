@@ -29,11 +29,8 @@ float passing(vec3 wo, vec3 wi) {
   float eta = apart_from_one(material.eta);
   vec3 sum = wo.z > 0.0 ? sum_refracted(wo, wi, eta) : sum_refracted(wi, wo, eta);
   vec3 wm = eta > 1.0 ? -sum : sum;
-  float L = length(sum);
-  if (wm.z <= 0.0 || L <= 0.0) return 0.0;
-  vec2 c = cos_refracted(L, eta);
-  if (c.x <= 0.0 || c.y <= 0.0) return 0.0;
-  return T_dielectric(c.x, c.y, eta) * (c.x / L) * (c.y / L) * D(wm, material.alpha);
+  float share = T_spread(wm, eta);
+  return share > 0.0 ? share * D(wm, material.alpha) : 0.0;
 }
 
 vec3 f(vec3 wo, vec3 wi) {

@@ -28,11 +28,8 @@ float passing(vec3 w, vec3 wt, bool above) {
   float eta = apart_from_one(material.eta_below);
   vec3 sum = above ? sum_refracted(w, wt, eta) : sum_refracted(wt, w, eta);
   vec3 wm = (eta > 1.0) == above ? -sum : sum;
-  float L = length(sum);
-  if (wm.z <= 0.0 || L <= 0.0) return 0.0;
-  vec2 c = cos_refracted(L, eta);
-  if (c.x <= 0.0 || c.y <= 0.0) return 0.0;
-  return T_dielectric(c.x, c.y, eta) * (c.x / L) * (c.y / L) * D(wm, material.alpha);
+  float share = T_spread(wm, eta);
+  return share > 0.0 ? share * D(wm, material.alpha) : 0.0;
 }
 
 float mirroring(vec3 w, vec3 wi, bool above) {

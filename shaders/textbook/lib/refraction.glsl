@@ -15,6 +15,12 @@ vec2 cos_refracted(float L, float eta) {
 
 float T_dielectric(float cos_o, float cos_t, float eta) { return 1.0 - F_dielectric(cos_o, eta); }
 
+float T_spread(vec3 m, float eta) {
+  float L = length(m);
+  vec2 c = cos_refracted(L, eta);
+  return m.z > 0.0 ? T_dielectric(c.x, c.y, eta) * c.x * c.y / (L * L) : 0.0;
+}
+
 vec3 refracted(vec3 w, vec3 wm, float eta) {
   float c = dot(w, wm);
   float inverse = 1.0 / eta;
