@@ -9,7 +9,7 @@ float F_schlick(float c, float F0) {
 
 // Schlick's curve bent to be F82 at a cosine of 1/7, 82 degrees, but no brighter than it was: the "F82-tint" model of Kutz, Hasan
 // and Edmondson 2021, "Novel aspects of the Adobe Standard Material", after Lazanyi and Szirmay-Kalos 2005 and Hoffman 2019; as
-// OpenPBR Surface 1.1 prints it, section "Metal". The curve is negative for indices next to 1; there it is 0.
+// OpenPBR Surface 1.1 prints it, section "Metal", Eq. 30. The curve is negative for indices next to 1; there it is 0.
 float F_f82(float c, float F0, float F82) {
   float m = 1.0 - c;
   float m2 = m * m;
