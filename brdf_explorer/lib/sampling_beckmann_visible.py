@@ -56,6 +56,8 @@ def visible_slope_beckmann(u, sin_o, cos_o):
 
 def sample_wm(wo, u, alpha):
     """A visible normal; wo may lie below the horizon."""
+    from scipy.special import ndtri
+
     x, y, z = split(wo)
     ax, ay = split(alpha)
     u0, u1 = split(u)
@@ -64,7 +66,7 @@ def sample_wm(wo, u, alpha):
     cos_phi = np.where(sin_o > 0, quotient(vx, sin_o), 1.0)
     sin_phi = quotient(vy, sin_o)
     along = visible_slope_beckmann(u0, sin_o, vz)
-    across = visible_slope_beckmann(u1, 0.0, 1.0)
+    across = np.clip(ndtri(u1) / np.sqrt(2), -6.0, 6.0)  # the closed form of visible_slope_beckmann(u1, 0, 1)
     slope_x = along * cos_phi - across * sin_phi
     slope_y = along * sin_phi + across * cos_phi
     return normalize(vec(-ax * slope_x, -ay * slope_y, np.ones_like(slope_x)))

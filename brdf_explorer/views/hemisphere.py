@@ -172,25 +172,30 @@ class Hemisphere(Drawn):
         """Whether the quantity is a mean of estimates."""
         return model.stochastic and self.quantity in ("f", "f_cos")
 
-    def peak(self, model, wo, up=1.0, quick=None):
-        """The Peak: the best of a grid that follows the lobe, then of steps from there that shrink.
+    def peak(self, model, wo, up=1.0):
+        """The Peak: the best of a grid that follows the lobe, then of steps from there that shrink."""
+        *_, found = self.climb(model, wo, up, model)
+        return found
 
-        quick: what evaluates the grid, if not the model: its Shader.
-        """
+    def climb(self, model, wo, up, quick):
+        """Yield ever better Peaks; the last is that of `peak`. quick: what evaluates the grid, the model or its Shader."""
         turn = np.array([1.0, 1.0, up])
         if self.over == "wm":
             w = facets(np.array([0.0, 0.0, 1.0]), model.alpha, RAYS)[0]
         else:
             (side,) = (s for s in sides(wo, model.slopes(), model.index()) if s.up == up)
             w = quadrature(side.wo, side.alpha, RAYS)[0].wi
-        values = self.values(model if self.over == "wm" else quick or model, wo, w * turn)
+        values = self.values(model if self.over == "wm" else quick, wo, w * turn)
         best, reach = around(values, w)
+        yield Peak(float(values.max()), of_disc(best), reach)
         steps = np.stack(np.meshgrid(*[np.linspace(-1, 1, 5)] * 2), axis=-1).reshape(-1, 2)
-        for step in 0.1 * max(reach, 1e-6) * 0.4 ** np.arange(14):
+        for n, step in enumerate(0.1 * max(reach, 1e-6) * 0.3 ** np.arange(12), 1):
             tries = best + step * steps
             tries /= np.maximum(np.linalg.norm(tries, axis=-1, keepdims=True) / EDGE, 1.0)
-            best = tries[self.values(model, wo, of_disc(tries) * turn).argmax()]
-        return Peak(float(self.values(model, wo, of_disc(best) * turn)), of_disc(best), reach)
+            values = self.values(model, wo, of_disc(tries) * turn)
+            best = tries[values.argmax()]
+            if n % 4 == 0:
+                yield Peak(float(values.max()), of_disc(best), reach)
 
     def peak_of(self, table):
         """The Peak of estimates in a Table."""
@@ -232,6 +237,9 @@ class Hemisphere(Drawn):
             peaks = dict(found)
             if gpu.pace:
                 yield None, "", False
+        samples = {up: disc(self.drawn(model, wo, up)) for up in peaks}
+        if gpu.pace:
+            yield None, "", False
         places = self.places(peaks, size, scale)
         maps = {name: one for place in places for name, one in self.maps(gpu, state, wo, place, peaks, scale).items()}
         runs = {name: one.passes(WALKS if tables else 1) for name, one in maps.items()}
@@ -244,7 +252,7 @@ class Hemisphere(Drawn):
             words, values = found.get("integral", ("", {}))
             peaks |= {up: peaks[up]._replace(value=value) for up, value in values.items()}
             if drawn is None or done or tables and time.perf_counter() - since > REDRAWN:
-                drawn, since = self.drawing(state, wo, peaks, places, maps, size, scale), time.perf_counter()
+                drawn, since = self.drawing(state, wo, peaks, places, maps, samples, size, scale), time.perf_counter()
             up, peak = max(peaks.items(), key=lambda item: item[1].value)
             theta, phi = np.degrees(angles(peak.w * [1.0, 1.0, up])).round(2) + 0.0  # which makes -0 a 0
             note = f"peak {number(peak.value, 4)} / sr at θ {theta:g}°" + f", φ {phi % 360:g}°" * bool(theta)
@@ -254,15 +262,16 @@ class Hemisphere(Drawn):
             yield drawn, note + f"; {QUANTITIES[self.quantity][1]} = {words}" * bool(words), done
 
     def peaks(self, gpu, model, wo, tables):
-        """Yield {up: Peak} of the hemispheres, one more each time, or from the first estimates in Tables."""
+        """Yield {up: Peak}, better and better and of one hemisphere more, or from the first estimates in Tables."""
         if tables:
             for found, _ in islice(tables, FEW):
                 yield {t.side.up: self.peak_of(t) for t in found}
             return
         found = {}
         for up in self.hemispheres(model):
-            found[up] = self.peak(model, wo, up, Shader(gpu, model))
-            yield found
+            for peak in self.climb(model, wo, up, Shader(gpu, model)):
+                found[up] = peak
+                yield found
 
     def integrals(self, gpu, model, wo, tables):
         """Yield the integral that QUANTITIES names, as words, and largest values by hemisphere where they get better."""
@@ -305,21 +314,20 @@ class Hemisphere(Drawn):
             found[place.up, "inset"] = Map(*shown, "inset", (side, side), disc(peak.w), 2 * across(peak) / side)
         return found
 
-    def drawing(self, state, wo, peaks, places, maps, size, scale):
+    def drawing(self, state, wo, peaks, places, maps, samples, size, scale):
         draw = Drawing(size, scale, state.look.theme)
         most = max(peak.value for peak in peaks.values())
         for place in places:
-            self.disc_of(draw, state, wo, place, peaks[place.up], most, maps)
+            self.disc_of(draw, state, wo, place, peaks[place.up], most, maps, samples[place.up])
         draw.text(QUANTITIES[self.quantity][0], (12 * scale, size[1] - 15 * scale), "ink", (0.0, 0.5), 12.5)
         return draw
 
-    def disc_of(self, draw, state, wo, place, peak, most, maps):
-        """One hemisphere; `most` has the last colour."""
+    def disc_of(self, draw, state, wo, place, peak, most, maps, samples):
+        """One hemisphere with samples (n, 2) on its disc; `most` has the last colour."""
         scale, up, center, radius = draw.scale, place.up, place.center, place.radius
         if place.bar is not None:
             draw.text(place.where, place.title, "muted", (0.0, 0.5), 11.5)
         draw.raster(place.at, maps[up, "disc"].painted(self, most, draw.color("paper")))
-        samples = disc(self.drawn(state.model, wo, up))
         turn = np.radians(np.arange(0, 361, 4))
         ring = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
         phi = np.radians(state.directions.phi_o)
