@@ -18,6 +18,7 @@ from .picture import PALETTES, R2, Label, Picture, rgb
 from .table import NODES, RAYS, noise, progressive
 
 PASSES = 8  # jittered drawings whose mean has smooth edges
+FOOT = 36  # points from the lower edge to a line of words, under which the window has its note
 BAR = 76  # points at the right for the legend
 THIN = 3  # points across, below which a lobe is drawn as a line
 AXIS = 24  # pieces of that line, each of one colour
@@ -169,11 +170,8 @@ def thin(size, scale, colors, widths):
         return []
     lines = "lines" if len(known) > 1 else "a line"
     words = f"too thin to be seen, drawn as {lines}: {' and '.join(known)} wide at half the peak"
-    return [
-        Label(
-            cut(words, size[0] / scale - 24, 11.5), 12 * scale, size[1] - 14 * scale, colors["muted"], (0.0, 0.5), 11.5
-        )
-    ]
+    at = 12 * scale, size[1] - FOOT * scale
+    return [Label(cut(words, size[0] / scale - 24, 11.5), *at, colors["muted"], (0.0, 0.5), 11.5)]
 
 
 def described(values):
