@@ -1,5 +1,7 @@
 """Parameters that models of microfacets share, each declared once."""
 
+from math import inf
+
 from .model import choice, param
 
 METALS = (
@@ -17,6 +19,10 @@ METALS = (
     "mercury",
 )
 """Those of lib/fresnel_spectral_*."""
+GOLD = 1.038
+"""The largest reflectance of gold's spectrum, in red, which is outside of the primaries."""
+RATIONAL = 3.2e-3
+"""What G1 by the rational fit of Beckmann's Lambda errs by at most: 3.1e-3."""
 
 
 def alpha(default, low=1e-4):
@@ -57,6 +63,18 @@ def spectrum():
 
 def smith():
     return choice("exact", ("exact", "rational"), "Smith's Lambda of Beckmann: exact, or Walter's rational fit")
+
+
+def exceptions(model):
+    """Limits of laws, by name, that models of Smith's facets exceed whose f is that of one reflection: see Model.exceptions."""
+    found = {}
+    if model.ndf == "beckmann" and model.smith == "rational":
+        found["weak white furnace"] = RATIONAL
+    if model.fresnel == "spectral" and model.spectrum == "gold":
+        found["energy"] = GOLD
+    if model.shadowing == "none":
+        found["energy"] = inf
+    return found
 
 
 def filled(choices):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from brdf_explorer.measure import albedo, cost
-from brdf_explorer.measure.error import METRICS, between, brightening, flip, itp, picture_rmse, values
+from brdf_explorer.measure.error import METRICS, between, brightening, flip, itp, picture_rmse, rmse_of_halves, values
 from brdf_explorer.measure.grid import direction
 from brdf_explorer.measure.itp import delta_e_itp, ictcp
 from brdf_explorer.measure.laws import viewers
@@ -82,6 +82,22 @@ def test_an_error_of_a_method_from_itself_is_zero_and_is_known_to_rounding():
         if metric.compares == "values":
             error = between(metric, WHITE, WHITE, WHITE.slopes())
             assert error.value <= 1e-12 and error.error < 1e-11, name
+
+
+def test_noise_adds_nothing_to_the_rmse_of_halves():
+    """Of estimates of one f it is near 0, where that of their mean is the noise; of others it is how far these are apart."""
+    rng, true = np.random.default_rng(1), values(MICROFACET(alpha=0.5, fresnel="one"), (0.5, 0.5))
+
+    def estimates(factor):
+        return [replace(true, f=true.f * (factor + 0.3 * rng.normal(size=true.f.shape))) for _ in range(2)]
+
+    for factor in (1.0, 1.2):
+        halves = list(zip(estimates(1.0), estimates(factor), strict=True))
+        mean = [replace(true, f=(one.f + other.f) / 2) for one, other in zip(*halves, strict=True)]
+        assert rmse_of_halves(*halves) == pytest.approx(
+            factor - 1, abs=0.08
+        )  # the root of noise squared over that of 5000
+        assert METRICS["rmse"].function(*mean[::-1]) > 0.25
 
 
 def test_an_error_of_reciprocity_is_found():

@@ -13,7 +13,7 @@ from brdf_explorer.measure.grid import direction
 from brdf_explorer.models import MODELS
 from brdf_explorer.state import Directions, Look, State
 from brdf_explorer.views.diagram import radius
-from brdf_explorer.views.hemisphere import NARROW, QUANTITIES, Hemisphere, Map, disc, of_disc
+from brdf_explorer.views.hemisphere import NARROW, QUANTITIES, Hemisphere, Map, Peak, disc, of_disc
 from brdf_explorer.views.picture import PALETTES, rgb
 
 MICROFACET, DIFFUSE = MODELS["microfacet"], MODELS["diffuse"]
@@ -129,6 +129,24 @@ def test_sharp_lobes_do_not_vanish_between_pixels(gpu, quantity, alpha):
         near = map_of(*shown, disc(peak.w), 2 * peak.reach / 100)
         bright = np.mean(np.linalg.norm(near - viridis(0.0), axis=-1) > 0.5)
         assert 0.02 < bright < 0.6
+
+
+def test_map_of_walks_is_their_mean(gpu):
+    """Its noise, by which neighbours differ, falls as one over the root of the passes; its integral is the albedo."""
+    model = MODELS["multiscatter"](alpha=0.8, fresnel="one")
+    state = State(directions=Directions(55.0, 25.0)).with_model(model)
+    noise = {}
+    for passes in (1, 64):
+        shown = Map(
+            Hemisphere(quantity="f"), gpu, state, WO, 1.0, Peak(1.0, WO, 1.0), "test", (128, 128), (0.0, 0.0), 2 / 128
+        )
+        deque(shown.passes(passes), 0)
+        middle = gpu.pixels(shown.values)[32:96, 32:96, 0]
+        noise[passes] = np.diff(middle, axis=1).std()
+    assert noise[64] < 1.5 * noise[1] / 8
+    note = last(Hemisphere(quantity="f").pictures(gpu, state, (300, 300))).note
+    mean, error = map(float, note.rsplit("= ", 1)[1].split(" ± "))
+    assert abs(mean - 1) < 4 * error < 0.02
 
 
 def words(gpu, state, size=(600, 500), scale=1.0):

@@ -18,7 +18,7 @@ SHORT = 1e-7  # seconds, less than any drawing takes: strips are single rows
 def states():
     """Of a mirror, a ball of glass and walks, in the studio."""
     for name in ("gold", "frosted_glass", "sandblasted_copper"):
-        state = load(name, load("studio")).with_view("sphere", samples=3)
+        state = load(name, load("studio")).with_view("sphere", samples=3, background="plain")
         yield name, state.with_view("hemisphere", quantity="f")
 
 
@@ -38,6 +38,7 @@ def test_a_preview_shows_the_sphere_as_large(gpu, name, state):
     small = gpu.pixels(next(state.views["sphere"].pictures(gpu.apart().paced(SHORT), state, SIZE)).target)
     np.testing.assert_allclose(small[..., 3], whole[..., 3], atol=1e-6)
     covered = whole[..., 3] == 1
+    assert 0.4 < covered.mean() < 0.7
     assert 1 / 3 < small[covered][:, :3].mean() / whole[covered][:, :3].mean() < 3
 
 

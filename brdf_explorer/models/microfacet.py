@@ -50,14 +50,8 @@ class Microfacet(Model):
         return self.alpha
 
     def exceptions(self):
-        found = {}
-        if self.ndf == "beckmann" and self.smith == "rational":  # the fit's G1 errs by 3.1e-3
-            found["weak white furnace"] = 3.2e-3
-        if self.fresnel == "spectral" and self.spectrum == "gold":  # its red is outside of the primaries
-            found["energy"] = 1.038
-        if self.shadowing == "none":
-            found["energy"] = np.inf
-        elif self.energy != "none":
+        found = microsurface.exceptions(self)
+        if self.energy != "none" and self.shadowing != "none":
             found["energy"] = found.get("energy", 1.0) ** 2 * (1 + self._gain())
         if self.energy == "turquin":
             found["reciprocity"] = self._not_reciprocal()
@@ -118,7 +112,7 @@ class Microfacet(Model):
     def _gain(self):
         isotropic, other, by_azimuth = GAINS[self.energy]
         fit = isotropic if self.alpha[0] == self.alpha[1] else by_azimuth if self.shadowing == "directional" else other
-        return fit + 3.2e-3 * (self.smith == "rational")
+        return fit + microsurface.RATIONAL * (self.smith == "rational")
 
     def _not_reciprocal(self):
         """A bound of |f(wo, wi) - f(wi, wo)| over the larger one: 1 - 1 / gain, Turquin's largest; none is below 1."""

@@ -64,9 +64,9 @@ class Multiscatter(Model):
         return (1.0, 1.0) if self.facets == "diffuse" else self.alpha
 
     def exceptions(self):
-        # its red is outside of the primaries, 1.038 at a facet; light meets 3.1 of them on average where alpha is 1
+        # light meets 3.1 of them on average where alpha is 1
         gold = self.facets == "conductor" and self.fresnel == "spectral" and self.spectrum == "gold"
-        return {"energy": 1.038**4} if gold else {}
+        return {"energy": microsurface.GOLD**4} if gold else {}
 
     def parts(self):
         """The orders of scattering."""

@@ -48,13 +48,7 @@ class Nonspecular(Model):
         return tuple(np.minimum(blurred(self.alpha, self.kappa), 1.0).tolist())
 
     def exceptions(self):
-        found = {}
-        if self.ndf == "beckmann" and self.smith == "rational":  # the fit's G1 errs by 3.1e-3
-            found["weak white furnace"] = 3.2e-3
-        if self.fresnel == "spectral" and self.spectrum == "gold":  # its red is outside of the primaries
-            found["energy"] = 1.038
-        if self.shadowing == "none":
-            found["energy"] = np.inf
+        found = microsurface.exceptions(self)
         found["reciprocity"] = (
             1e-6  # exchanged, the nodes may lie about another corner; and the exponent multiplies rounding
         )
